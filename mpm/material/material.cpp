@@ -1,0 +1,1 @@
+#include "mpm/material/law.hpp"
