@@ -1,4 +1,11 @@
-# Build options and the two helpers every module uses.
+# Build options and the helpers every module uses.
+include(GNUInstallDirs)
+
+find_program(POLDER_CCACHE ccache)
+if(POLDER_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${POLDER_CCACHE})
+endif()
+
 option(POLDER_BENCHMARKS "build the kernel benchmarks" ON)
 set(POLDER_SIMD "dispatch" CACHE STRING
     "vector code of the hot kernels: 'dispatch' builds every level and picks one when the program starts; \
@@ -8,6 +15,9 @@ option(POLDER_SANITIZE "address and undefined-behaviour sanitizers" OFF)
 
 add_library(polder_flags INTERFACE)
 target_compile_options(polder_flags INTERFACE -Wall -Wextra -fno-math-errno -fno-trapping-math)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  target_compile_options(polder_flags INTERFACE -Wno-restrict)  # false alarm on "literal" + std::string, GCC bug 105651
+endif()
 if(POLDER_SIMD STREQUAL "native")
   target_compile_options(polder_flags INTERFACE -march=native)
 endif()
@@ -23,16 +33,37 @@ if(POLDER_SANITIZE)
   target_link_options(polder_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
-# polder_module(NAME SOURCES ... [LINK ...] [PRIVATE_LINK ...]): one layer of the house as a library target polder::NAME.
+# polder_find_package(PACKAGE ...): find_package(PACKAGE REQUIRED ...) that the installed package repeats, because a
+# program that links Polder's static libraries needs what they need. For packages of Polder's libraries only; what just
+# the program or the tests use is found with plain find_package.
+set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)
+macro(polder_find_package)
+  find_package(${ARGV} REQUIRED)
+  string(REPLACE ";" " " polder_arguments "${ARGV}")
+  set_property(GLOBAL APPEND_STRING PROPERTY POLDER_DEPENDENCIES "find_dependency(${polder_arguments})\n")
+endmacro()
+
+# polder_module(NAME SOURCES ... [LINK ...] [PRIVATE_LINK ...]): one layer of the house as a library target polder::NAME,
+# installed as Polder::NAME with the headers of its folder.
 function(polder_module name)
   cmake_parse_arguments(M "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
   add_library(polder_${name} STATIC ${M_SOURCES})
   add_library(polder::${name} ALIAS polder_${name})
   set_target_properties(polder_${name} PROPERTIES EXPORT_NAME ${name})
   target_include_directories(polder_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-                                                   $<INSTALL_INTERFACE:include/polder>)
+                                                   $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/polder>)
   target_compile_features(polder_${name} PUBLIC cxx_std_20)
   target_link_libraries(polder_${name} PUBLIC ${M_LINK} PRIVATE $<BUILD_INTERFACE:polder_flags> ${M_PRIVATE_LINK})
+  if(POLDER_SIMD_LEVELS STREQUAL "native")  # headers must name the same level in a program that uses the library
+    target_compile_definitions(polder_${name} INTERFACE POLDER_SIMD_NATIVE)
+  endif()
+  if(POLDER_SANITIZE)  # a library with sanitizers links into a program with sanitizers only
+    target_link_options(polder_${name} INTERFACE -fsanitize=address,undefined)
+  endif()
+  install(TARGETS polder_${name} EXPORT PolderTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/polder
+          FILES_MATCHING PATTERN "*.hpp")
+  set_property(GLOBAL APPEND PROPERTY POLDER_MODULES ${name})
 endfunction()
 
 # polder_kernels(NAME SOURCES ...): sources compiled once for each vector level, each in a namespace of its own
