@@ -77,6 +77,7 @@ struct NumericsSpec {
 struct WaterSpec {
   double density = 1000;            // [kg/m3]
   double bulk_modulus = 2.2e9;      // [Pa], may be infinite
+  double viscosity = 1e-3;          // dynamic [Pa s]; converts an intrinsic permeability given in the case file
   std::vector<Vector3> phreatic;    // polyline, soil below it is saturated; empty = all soil of porous materials is
   double saturation_above = 0;      // degree of saturation above it [-]
   double suction_above = 0;         // suction above it [Pa]
@@ -172,7 +173,8 @@ struct Expectation {
 };
 
 struct OutputSpec {
-  std::vector<std::string> fields;  // of frames
+  // of the soil's frames, names of frame_quantities() in quantities.hpp
+  std::vector<std::string> fields{"displacement", "velocity", "effective_stress", "pore_pressure", "deviatoric_strain"};
   double every = 0;                 // frames [s]; 0: first and last only
   double history_every = 0;         // [s]; 0: duration / 1000
   double checkpoint_every = 600;    // wall clock [s]

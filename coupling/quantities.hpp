@@ -1,0 +1,23 @@
+// What can be measured and drawn: the names a case may use in [[measure]] and in [output] fields, and the
+// names the probes, frames and histories carry. The case reader offers exactly these; the observers must
+// provide each of them.
+//
+// Signs: stresses are effective and positive in tension, except mean_effective_stress p' = -tr(sigma')/3
+// (positive in compression) and deviatoric_stress q = sqrt(3 J2); pore pressure is positive in compression.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace polder::coupling {
+
+struct Quantity {
+  std::string name;
+  std::string unit;
+};
+
+const std::vector<Quantity>& particle_quantities();  // scalars of one particle, for [[measure]]
+const std::vector<Quantity>& cell_quantities();      // scalars of one cell, for [[measure]]
+const std::vector<Quantity>& frame_quantities();     // fields of the soil's frames
+
+}  // namespace polder::coupling
