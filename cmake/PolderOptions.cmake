@@ -68,6 +68,10 @@ endfunction()
 
 # polder_kernels(NAME SOURCES ...): sources compiled once for each vector level, each in a namespace of its own
 # (core/simd.hpp), so that one program carries all of them and picks one when it starts (core/simd_level.hpp).
+#
+# Inline functions of other headers (std::vector, say) are compiled into these objects too, with the level's
+# instructions, and the linker keeps any one copy for the whole program: on an older processor perhaps an unusable one.
+# So the objects of a level above the baseline are joined into one that exports only the names of its own namespace.
 function(polder_kernels name)
   cmake_parse_arguments(K "" "" "SOURCES" ${ARGN})
   set(flags_native "")
@@ -81,6 +85,21 @@ function(polder_kernels name)
     target_compile_definitions(${object} PRIVATE POLDER_SIMD_NAMESPACE=simd_${level})
     target_compile_options(${object} PRIVATE -Wno-psabi $<$<CONFIG:Release>:-O3> ${flags_${level}})
     target_link_libraries(${object} PRIVATE polder_flags OpenMP::OpenMP_CXX)
-    target_sources(polder_${name} PRIVATE $<TARGET_OBJECTS:${object}>)
+    if(level MATCHES "^(native|baseline)$")
+      target_sources(polder_${name} PRIVATE $<TARGET_OBJECTS:${object}>)
+    else()
+      target_compile_options(${object} PRIVATE -fno-gnu-unique)
+      set(joined ${CMAKE_CURRENT_BINARY_DIR}/kernels_${level}.o)
+      add_custom_command(
+        OUTPUT ${joined}
+        COMMAND ${CMAKE_LINKER} -r --force-group-allocation -o ${joined}.all $<TARGET_OBJECTS:${object}>
+        COMMAND ${CMAKE_OBJCOPY} --wildcard --keep-global-symbol=*simd_${level}* ${joined}.all ${joined}
+        COMMAND ${CMAKE_COMMAND} -E rm ${joined}.all
+        DEPENDS ${object} $<TARGET_OBJECTS:${object}>
+        COMMENT "Joining the ${level} kernels of ${name}"
+        COMMAND_EXPAND_LISTS VERBATIM)
+      set_source_files_properties(${joined} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
+      target_sources(polder_${name} PRIVATE ${joined})
+    endif()
   endforeach()
 endfunction()
