@@ -1,0 +1,85 @@
+// Material points of one body, as a structure of arrays in block and cell order.
+//
+// Every block's range is padded to whole packs with massless points at the block's centre (id -1), so kernels need no
+// masks and no tails. sort() puts the points in order of (block, cell), stably, so the order is a function of the state
+// alone. Points are re-sorted only when one of them may have left the skin of its block's tile (kSkin cells); between
+// sorts the order stands, whatever the number of threads.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/grid.hpp"
+
+namespace polder {
+
+inline constexpr int kPackPadding = 8;  // the widest pack of any vector level
+inline constexpr double kSkin = 0.45;   // distance in cells that a point may travel between two sorts
+
+// A named array of a particle set, for sorting, checkpoints and output.
+struct ParticleField {
+  std::string name;
+  Reals* values;
+  double padding;  // value of massless padding points; positions are padded with the block's centre
+};
+
+template <int D> class ParticleSet {
+ public:
+  static constexpr int kStress = D == 2 ? 4 : 6;  // xx yy zz xy (yz zx)
+  struct Range {
+    int first = 0;
+    int count = 0;  // a multiple of kPackPadding
+  };
+
+  std::string name;
+  int material = 0;
+  double density_solid = 0;        // of the grains [kg/m3]
+  double reference_half_size = 0;  // half the side of a point's initial domain [m]
+
+  std::array<Reals, D> position;          // [m]
+  std::array<Reals, D> velocity;          // [m/s]
+  std::array<Reals, D> half_size;         // tracked half sides of the domain [m]
+  std::array<Reals, D> initial_position;  // [m], for displacements
+  Reals mass;                             // of the solid [kg per m thickness, per radian, or kg]
+  Reals volume;                           // [m2, m2 r, m3]
+  std::array<Reals, kStress> stress;      // effective, tension positive [Pa]
+  std::vector<Reals> state;               // of the material law
+  std::vector<double> state_padding;      // harmless state of padding points
+  // Present only where the scene needs them (otherwise empty):
+  std::array<Reals, D * D> affine;             // C of the affine transfer [1/s]
+  std::array<Reals, D> body_acceleration;      // besides gravity [m/s2]
+  Reals pore_water;      // degree of saturation times water density [kg per m3 of pores]
+  Reals suction_stress;  // degree of saturation times suction [Pa], isotropic part of the total stress
+  Reals conductivity;    // hydraulic conductivity [m/s]
+  Reals wet;             // 1 where the pores are full of water, 0 above the phreatic line
+
+  std::vector<int> id;        // -1 = padding
+  std::vector<Range> ranges;  // one for each occupied block of the grid
+
+  int slots() const { return static_cast<int>(id.size()); }  // with padding
+  int count() const { return count_; }                       // points with mass
+
+  // Add points: give every array of fields() `n` more entries (zero); ids continue.
+  void append(int n);
+  // All arrays in use.
+  std::vector<ParticleField> fields();
+
+  // Linear block numbers of all points. Throws NumericalError when a point is outside the grid's box.
+  std::vector<int> occupied_block_numbers(const Grid<D>& grid) const;
+  // Put the points in order of the grid's blocks (grid.activate() has been called for all sets).
+  void sort(const Grid<D>& grid);
+  // Position of the point with this id in the arrays.
+  int find(int id) const { return slot_of_id_[id]; }
+  // After the arrays were filled from a checkpoint: rebuild what is derived from them.
+  void restore(int count);
+
+ private:
+  void index_ids();
+  int count_ = 0;
+  std::vector<int> slot_of_id_;
+};
+
+extern template class ParticleSet<2>;
+extern template class ParticleSet<3>;
+
+}  // namespace polder

@@ -1,0 +1,72 @@
+// Mechanical boundaries of the background grid: constraints on nodal velocities.
+//
+// A boundary acts along a side of the grid or behind a segment inside it. The list of constrained nodes is built when the
+// grid's numbering changes and applied in the order of the case file, so that at a corner the later boundary has the last
+// word where two prescribe the same component.
+//
+// Coulomb friction: a node that presses against the boundary loses its normal velocity; the tangential velocity falls by
+// at most `coefficient` times that loss. The normal force is what the node's acceleration says, so where pore pressure is
+// part of the acceleration it is the effective one.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/grid.hpp"
+
+namespace polder::mpm {
+
+enum class BoundaryKind { free, fixed, roller, friction, velocity };
+
+template <int D> struct BoundarySpec {
+  std::string name;
+  BoundaryKind kind = BoundaryKind::roller;
+  int side = -1;            // 2 * axis + (0 lower, 1 upper), or -1
+  bool has_segment = false; // 2D: restricts the side to its part between the ends, or stands alone inside the grid
+  Point<D> from{}, to{};    // the soil lies to the left, seen from `from` to `to`
+  double coefficient = 0;   // friction
+  std::array<bool, D> prescribed{};                        // velocity: which components
+  std::array<std::function<double(double)>, D> velocity{};  // [m/s] at time t
+};
+
+template <int D> class BoundarySet {
+ public:
+  // Later boundaries overrule earlier ones on the sides they share. Sides without any boundary are free.
+  explicit BoundarySet(std::vector<BoundarySpec<D>> specs = {}) : specs_(std::move(specs)), reaction_(specs_.size()) {}
+
+  const std::vector<BoundarySpec<D>>& specs() const { return specs_; }
+
+  // Find the constrained nodes; cheap when the grid has not changed.
+  void update(const Grid<D>& grid);
+
+  // Constrain v [slots * 4] at time t. mass [sums, stride 8] turns velocity changes into reactions; with `record` the
+  // force of each boundary on the material over dt is kept. `friction` false leaves tangential velocities alone (the
+  // second mapping of MUSL, which has friction in it already).
+  void apply(double time, double dt, const Reals& sums, Reals& v, bool friction, bool record);
+
+  // Force of boundary i on the material in the last recorded step [N per m thickness, per radian, or N].
+  const Point<D>& reaction(int i) const { return reaction_[i]; }
+
+  // Components that no motion can change: bit d set where component d of the slot is prescribed.
+  const std::vector<std::uint8_t>& fixed_components() const { return fixed_; }
+
+ private:
+  struct Node {
+    int slot;
+    int spec;
+    Point<D> normal;  // into the material
+  };
+  std::vector<BoundarySpec<D>> specs_;
+  std::vector<Node> nodes_;
+  std::vector<std::uint8_t> fixed_;
+  std::vector<Point<D>> reaction_;
+  std::uint64_t revision_ = 0;
+};
+
+extern template class BoundarySet<2>;
+extern template class BoundarySet<3>;
+
+}  // namespace polder::mpm

@@ -1,0 +1,344 @@
+// Nodes to particles: velocities, velocity gradients, stress, motion.
+#include <algorithm>
+
+#include "core/threads.hpp"
+#include "mpm/kernels/tile.hpp"
+#include "mpm/material/law.hpp"
+#include "mpm/material/rotation.hpp"
+
+namespace polder::POLDER_SIMD_NAMESPACE {
+namespace {
+
+using mpm::AffineKind;
+using mpm::MoveOptions;
+using mpm::MoveResult;
+
+// A tile holds two vector fields a and b: 2D {ax, ay, bx, by}, 3D {ax, ay, az, -, bx, by, bz, -}.
+template <int D> inline constexpr int kPair = D == 2 ? 4 : 8;
+template <int D> inline constexpr int kSecond = D == 2 ? 2 : 4;
+
+template <int D> struct Gathered {
+  Pack a[D], b[D];          // sum N a, sum N b
+  Pack gradient[D * D];     // db_i/dx_j [1/s]
+  Pack moment[D * D];       // sum N b_i (x_node - x_p)_j / sum N (x_node - x_p)_j^2 [1/s], affine only
+};
+
+template <int D> void load_pair(const Grid<D>& grid, int block, const Reals& a, const Reals& b, double* tile) {
+  constexpr int kVector = mpm::Transfer<D>::kVector;
+  if constexpr (D == 2) {
+    // Interleave by loading each field with a stride of four and half the width.
+    alignas(64) double other[mpm::Transfer<D>::kTileNodes * 4];
+    load_tile<D, kVector, kPair<D>>(grid, block, a.data(), tile);
+    load_tile<D, kVector, kPair<D>>(grid, block, b.data(), other);
+    for (int i = 0; i < mpm::Transfer<D>::kTileNodes; ++i)
+      tile[i * 4 + 2] = other[i * 4], tile[i * 4 + 3] = other[i * 4 + 1];
+  } else {
+    load_tile<D, kVector, kPair<D>>(grid, block, a.data(), tile);
+    load_tile<D, kVector, kPair<D>>(grid, block, b.data(), tile + 4);
+  }
+}
+
+enum class Want { values, gradient, moment };
+
+template <int D, Want kWant>
+POLDER_INLINE void gather_pack(const double* tile, const BlockFrame<D>& frame, const TileStencil<D>& s, const Pack* position,
+                               double h, Gathered<D>& out) {
+  constexpr int kTile = mpm::Transfer<D>::kTileSide, kW = kPair<D>;
+  constexpr bool kGradient = kWant != Want::values, kMoment = kWant == Want::moment;
+  alignas(64) double w[D][3][kLanes], g[D][3][kLanes], r[D][3][kLanes];
+  for (int d = 0; d < D; ++d)
+    for (int a = 0; a < 3; ++a) {
+      store(w[d][a], s.axis[d].weight[a]);
+      if constexpr (kGradient) store(g[d][a], s.axis[d].slope[a] * frame.inverse_h);
+      if constexpr (kMoment) store(r[d][a], s.axis[d].weight[a] * s.distance(frame, d, a, position[d], h));
+    }
+  Reg<kW> value[kLanes], slope[kGradient ? D : 1][kLanes], moment[kMoment ? D : 1][kLanes];
+  for (int l = 0; l < kLanes; ++l) {
+    const double* first = tile + s.start[l] * kW;
+    Reg<kW> v{}, dx{}, dy{}, dz{}, mx{}, my{}, mz{};
+    for (int k = 0; k < (D == 3 ? 3 : 1); ++k) {
+      Reg<kW> pv{}, px{}, py{}, qx{}, qy{};  // of this plane
+      for (int j = 0; j < 3; ++j) {
+        const double* row = first + ((D == 3 ? k * kTile : 0) + j) * kTile * kW;
+        Reg<kW> rv{}, rx{}, sx{};
+        for (int i = 0; i < 3; ++i) {
+          const Reg<kW> n = Reg<kW>::load(row + i * kW);
+          rv += n * w[0][i][l];
+          if constexpr (kGradient) rx += n * g[0][i][l];
+          if constexpr (kMoment) sx += n * r[0][i][l];
+        }
+        pv += rv * w[1][j][l];
+        if constexpr (kGradient) px += rx * w[1][j][l], py += rv * g[1][j][l];
+        if constexpr (kMoment) qx += sx * w[1][j][l], qy += rv * r[1][j][l];
+      }
+      if constexpr (D == 2) {
+        v = pv, dx = px, dy = py, mx = qx, my = qy;
+      } else {
+        const double wk = w[2][k][l];
+        v += pv * wk;
+        if constexpr (kGradient) dx += px * wk, dy += py * wk, dz += pv * g[2][k][l];
+        if constexpr (kMoment) mx += qx * wk, my += qy * wk, mz += pv * r[2][k][l];
+      }
+    }
+    value[l] = v;
+    if constexpr (kGradient) {
+      slope[0][l] = dx, slope[1][l] = dy;
+      if constexpr (D == 3) slope[2][l] = dz;
+    }
+    if constexpr (kMoment) {
+      moment[0][l] = mx, moment[1][l] = my;
+      if constexpr (D == 3) moment[2][l] = mz;
+    }
+  }
+  Pack f[kW];
+  to_packs<kW>(value, f);
+  for (int d = 0; d < D; ++d) out.a[d] = f[d], out.b[d] = f[kSecond<D> + d];
+  if constexpr (kGradient)
+    for (int j = 0; j < D; ++j) {
+      to_packs<kW>(slope[j], f);
+      for (int i = 0; i < D; ++i) out.gradient[i * D + j] = f[kSecond<D> + i];
+    }
+  if constexpr (kMoment)
+    for (int j = 0; j < D; ++j) {
+      // The second moment of the weights is diagonal (tensor product, linear completeness); 0 on an interpolating node.
+      Pack second = Pack{};
+      for (int a = 0; a < 3; ++a) {
+        const Pack x = s.distance(frame, j, a, position[j], h);
+        second += s.axis[j].weight[a] * x * x;
+      }
+      const Pack inverse = select(second > 1e-10 * h * h, 1.0 / max(second, 1e-10 * h * h), Pack{});
+      to_packs<kW>(moment[j], f);
+      for (int i = 0; i < D; ++i) out.moment[i * D + j] = f[kSecond<D> + i] * inverse;
+    }
+}
+
+template <int D> void update_velocities_of(mpm::Transfer<D>& t, double flip, const Reals& v_old, const Reals& v_new, bool map) {
+  constexpr int kTileNodes = mpm::Transfer<D>::kTileNodes, kTile = mpm::Transfer<D>::kTileSide;
+  const Grid<D>& grid = *t.grid;
+  parallel_for(grid.occupied_blocks(), [&](int block) {
+    alignas(64) double in[kTileNodes * kPair<D>];
+    load_pair<D>(grid, block, v_old, v_new, in);
+    double* out = t.tiles.data() + static_cast<std::size_t>(block) * kTileNodes * 4;
+    if (map) std::memset(out, 0, sizeof(double) * kTileNodes * 4);
+    const BlockFrame<D> frame(grid, block);
+    for (const mpm::Body<D>& body : t.bodies) {
+      ParticleSet<D>& set = *body.particles;
+      const auto range = set.ranges[block];
+      for (int p = range.first; p < range.first + range.count; p += kLanes) {
+        Pack x[D], l[D];
+        for (int d = 0; d < D; ++d) x[d] = load(&set.position[d][p]), l[d] = load(&set.half_size[d][p]);
+        TileStencil<D> s;
+        s.set(frame, t.shape, x, l);
+        Gathered<D> q;
+        gather_pack<D, Want::values>(in, frame, s, x, grid.spacing(), q);
+        Pack v[D];
+        for (int d = 0; d < D; ++d) {
+          v[d] = flip * (load(&set.velocity[d][p]) + (q.b[d] - q.a[d])) + (1 - flip) * q.b[d];
+          store(&set.velocity[d][p], v[d]);
+        }
+        if (!map) continue;
+        const Pack solid = load(&set.mass[p]);
+        Pack mass = solid;
+        if (!set.pore_water.empty())
+          mass += load(&set.pore_water[p]) * (select(solid > 0, load(&set.volume[p]), Pack{}) - solid * (1 / set.density_solid));
+        Pack f[4] = {};
+        for (int d = 0; d < D; ++d) f[d] = mass * v[d];
+        Reg<4> momentum[kLanes];
+        to_nodes<4>(f, momentum);
+        alignas(64) double w[D][3][kLanes];
+        for (int d = 0; d < D; ++d)
+          for (int a = 0; a < 3; ++a) store(w[d][a], s.axis[d].weight[a]);
+        for (int lane = 0; lane < kLanes; ++lane)
+          for (int k = 0; k < (D == 3 ? 3 : 1); ++k)
+            for (int j = 0; j < 3; ++j) {
+              double* to = out + (s.start[lane] + ((D == 3 ? k * kTile : 0) + j) * kTile) * 4;
+              const double wj = w[1][j][lane] * (D == 3 ? w[D - 1][k][lane] : 1.0);
+              const Reg<4> row = momentum[lane] * wj;
+              for (int i = 0; i < 3; ++i) (Reg<4>::load(to + i * 4) + row * w[0][i][lane]).store(to + i * 4);
+            }
+      }
+    }
+  });
+}
+
+// Replace the volumetric strain of a pack by that of its cell (NaN: keep), shared by the components that deform.
+template <int D>
+POLDER_INLINE void project_volumetric(const BlockFrame<D>& frame, const double* rate, const Pack* position, Mask real, double dt,
+                                      bool hoop, Pack* strain, Pack* gradient) {
+  constexpr int kTile = mpm::Transfer<D>::kTileSide;
+  Mask index = Mask{};
+  for (int d = D - 1; d >= 0; --d)
+    index = index * kTile + (floor_to_int((position[d] - frame.origin[d]) * frame.inverse_h) - frame.first_node[d]);
+  Pack cell_rate;
+  for (int l = 0; l < kLanes; ++l) cell_rate[l] = rate[index[l]];
+  const int n = D == 3 || hoop ? 3 : 2;
+  Pack own = strain[0] + strain[1];
+  if (n == 3) own += strain[2];
+  const Pack correction = select(real & (cell_rate == cell_rate), (cell_rate * dt - own) * (1.0 / n), Pack{});
+  for (int k = 0; k < n; ++k) strain[k] += correction;
+  for (int d = 0; d < D; ++d) gradient[d * D + d] += correction;
+}
+
+struct BlockResult {
+  double far = 0, fast = 0;  // largest displacement along an axis [cells], largest squared speed
+  int body = -1, slot = -1;
+  bool finite = true;
+};
+
+// Strain increments of a pack from its displacement gradient; hoop strain from the radial velocity.
+template <int D>
+POLDER_INLINE void strain_of(const Pack* gradient, bool hoop, Pack hoop_strain, Pack* strain) {
+  strain[0] = gradient[0];
+  strain[1] = gradient[D + 1];
+  strain[2] = D == 3 ? gradient[D * D - 1] : hoop ? hoop_strain : Pack{};
+  strain[3] = 0.5 * (gradient[1] + gradient[D]);
+  if constexpr (D == 3) {
+    strain[4] = 0.5 * (gradient[5] + gradient[7]);
+    strain[5] = 0.5 * (gradient[2] + gradient[6]);
+  }
+}
+
+// Motion, volume and domain of a pack.
+template <int D>
+POLDER_INLINE void move_pack(ParticleSet<D>& set, int p, Mask real, const Pack* x, const Pack* half_size, const Pack* carried,
+                             const Pack* strain, bool hoop, double dt, double h, int body, BlockResult& result) {
+  Pack trace = strain[0] + strain[1];
+  if (D == 3 || hoop) trace += strain[2];
+  store(&set.volume[p], load(&set.volume[p]) * (1.0 + trace));
+  Pack fast = Pack{}, far = Pack{};
+  for (int d = 0; d < D; ++d) {
+    const Pack step = select(real, dt * carried[d], Pack{});
+    store(&set.position[d][p], x[d] + step);
+    store(&set.half_size[d][p], clamp(half_size[d] * (1.0 + strain[d]), 0.5 * set.reference_half_size,
+                                      std::min(1.5 * set.reference_half_size, 0.5 * h)));
+    far = max(far, abs(step) * (1 / h));
+    fast += carried[d] * carried[d];
+  }
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (!real[lane]) continue;
+    if (!(fast[lane] < 1e12)) result.finite = false;
+    if (fast[lane] > result.fast || !(fast[lane] < 1e12)) result.fast = fast[lane], result.body = body, result.slot = p + lane;
+    result.far = std::max(result.far, far[lane]);
+  }
+}
+
+// What one block of one body needs in move_block.
+template <int D> struct MoveFrame {
+  mpm::Transfer<D>& transfer;
+  const MoveOptions& options;
+  const BlockFrame<D>& block;
+  const double* velocities;  // tile of pairs
+  const double* rate;        // tile of volumetric rates, or null
+  bool hoop, usl;
+  double h;
+};
+
+template <int D, Want kWant>
+POLDER_INLINE void gather_strain(const MoveFrame<D>& m, ParticleSet<D>& set, int p, int body, int u, StressBatch<D>& batch,
+                                 BlockResult& result) {
+  const MoveOptions& o = m.options;
+  const double dt = o.dt;
+  const Mask real = load(&set.mass[p]) > 0;
+  Pack x[D], l[D];
+  for (int d = 0; d < D; ++d) x[d] = load(&set.position[d][p]), l[d] = load(&set.half_size[d][p]);
+  TileStencil<D> s;
+  s.set(m.block, m.transfer.shape, x, l);
+  Gathered<D> q;
+  gather_pack<D, kWant>(m.velocities, m.block, s, x, m.h, q);
+
+  // Velocities: USL blends here; affine takes the grid's; MUSL has done it before the second mapping.
+  Pack carried[D];
+  for (int d = 0; d < D; ++d) {
+    carried[d] = m.usl ? q.b[d] : q.a[d];
+    if (m.usl)
+      store(&set.velocity[d][p], o.flip * (load(&set.velocity[d][p]) + (q.b[d] - q.a[d])) + (1 - o.flip) * q.b[d]);
+    else if (o.affine != AffineKind::none)
+      store(&set.velocity[d][p], carried[d]);
+  }
+  if (o.affine != AffineKind::none)
+    for (int k = 0; k < D * D; ++k)
+      store(&set.affine[k][p], select(real, kWant == Want::moment ? q.moment[k] : q.gradient[k], Pack{}));
+
+  // Padding points feel nothing, so that their state stays harmless.
+  for (int k = 0; k < D * D; ++k) batch.gradient[u][k] = select(real, dt * q.gradient[k], Pack{});
+  strain_of<D>(batch.gradient[u], m.hoop, select(real, dt * q.b[0] / x[0], Pack{}), batch.strain[u]);
+  if (m.rate != nullptr) project_volumetric<D>(m.block, m.rate, x, real, dt, m.hoop, batch.strain[u], batch.gradient[u]);
+
+  for (int k = 0; k < StressBatch<D>::kStress; ++k) batch.stress[u][k] = load(&set.stress[k][p]);
+  for (std::size_t k = 0; k < set.state.size(); ++k) batch.state[u][k] = load(&set.state[k][p]);
+  rotate_stress<D>(batch.gradient[u], batch.stress[u]);
+  move_pack<D>(set, p, real, x, l, carried, batch.strain[u], m.hoop, dt, m.h, body, result);
+}
+
+template <int D, Want kWant> void move_body(const MoveFrame<D>& m, int block, int body, BlockResult& result) {
+  ParticleSet<D>& set = *m.transfer.bodies[body].particles;
+  const auto* law = static_cast<const Law<D>*>(m.transfer.bodies[body].law);
+  const auto range = set.ranges[block];
+  for (int first = range.first; first < range.first + range.count; first += kBatchPacks * kLanes) {
+    StressBatch<D> batch;
+    batch.packs = std::min(kBatchPacks, (range.first + range.count - first) / kLanes);
+    for (int u = 0; u < batch.packs; ++u) gather_strain<D, kWant>(m, set, first + u * kLanes, body, u, batch, result);
+    law->update(batch);
+    for (int u = 0; u < batch.packs; ++u) {
+      const int p = first + u * kLanes;
+      for (int k = 0; k < StressBatch<D>::kStress; ++k) store(&set.stress[k][p], batch.stress[u][k]);
+      for (std::size_t k = 0; k < set.state.size(); ++k) store(&set.state[k][p], batch.state[u][k]);
+    }
+  }
+}
+
+template <int D, Want kWant>
+BlockResult move_block(mpm::Transfer<D>& t, const MoveOptions& o, const Reals* v_old, const Reals& v_move,
+                       const Reals& v_gradient, const Reals* cell_rate, int block) {
+  constexpr int kTileNodes = mpm::Transfer<D>::kTileNodes;
+  alignas(64) double velocities[kTileNodes * kPair<D>], rate[kTileNodes];
+  const bool usl = o.update_velocity && kWant == Want::gradient;
+  load_pair<D>(*t.grid, block, usl ? *v_old : v_move, v_gradient, velocities);
+  if (cell_rate != nullptr) load_tile<D, 1, 1>(*t.grid, block, cell_rate->data(), rate);
+  const BlockFrame<D> frame(*t.grid, block);
+  const MoveFrame<D> m{t, o, frame, velocities, cell_rate != nullptr ? rate : nullptr, t.space == Space::axisymmetric, usl,
+                       t.grid->spacing()};
+  BlockResult result;
+  for (std::size_t body = 0; body < t.bodies.size(); ++body) move_body<D, kWant>(m, block, static_cast<int>(body), result);
+  return result;
+}
+
+template <int D, Want kWant>
+MoveResult move_of(mpm::Transfer<D>& t, const MoveOptions& o, const Reals* v_old, const Reals& v_move,
+                   const Reals& v_gradient, const Reals* cell_rate) {
+  std::vector<BlockResult> results(t.grid->occupied_blocks());
+  parallel_for(t.grid->occupied_blocks(), [&](int block) {
+    results[block] = move_block<D, kWant>(t, o, v_old, v_move, v_gradient, cell_rate, block);
+  });
+  MoveResult total;
+  for (const BlockResult& r : results) {
+    total.finite &= r.finite;
+    total.largest_displacement = std::max(total.largest_displacement, r.far);
+    if (r.fast > total.largest_speed || !r.finite)
+      total.largest_speed = r.fast, total.fastest_body = r.body, total.fastest_slot = r.slot;
+  }
+  total.largest_speed = std::sqrt(total.largest_speed);
+  return total;
+}
+
+template <int D>
+MoveResult move_any(mpm::Transfer<D>& t, const MoveOptions& o, const Reals* v_old, const Reals& v_move,
+                    const Reals& v_gradient, const Reals* cell_rate) {
+  if (o.affine == AffineKind::apic) return move_of<D, Want::moment>(t, o, v_old, v_move, v_gradient, cell_rate);
+  return move_of<D, Want::gradient>(t, o, v_old, v_move, v_gradient, cell_rate);
+}
+
+}  // namespace
+
+void update_velocities(mpm::Transfer<2>& t, double f, const Reals& a, const Reals& b, bool m) { update_velocities_of(t, f, a, b, m); }
+void update_velocities(mpm::Transfer<3>& t, double f, const Reals& a, const Reals& b, bool m) { update_velocities_of(t, f, a, b, m); }
+MoveResult update_stress_and_move(mpm::Transfer<2>& t, const MoveOptions& o, const Reals* a, const Reals& b, const Reals& c,
+                                  const Reals* r) {
+  return move_any(t, o, a, b, c, r);
+}
+MoveResult update_stress_and_move(mpm::Transfer<3>& t, const MoveOptions& o, const Reals* a, const Reals& b, const Reals& c,
+                                  const Reals* r) {
+  return move_any(t, o, a, b, c, r);
+}
+
+}  // namespace polder::POLDER_SIMD_NAMESPACE

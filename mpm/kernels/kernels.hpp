@@ -1,0 +1,20 @@
+// The kernels of every vector level, for the dispatcher (mpm/transfer.cpp).
+#pragma once
+
+#include <memory>
+
+#include "mpm/transfer.hpp"
+
+#define POLDER_DECLARE_KERNELS(D)                                                                                    \
+  POLDER_SIMD_DECLARE(void, scatter_state, mpm::Transfer<D>&, mpm::AffineKind)                                      \
+  POLDER_SIMD_DECLARE(void, scatter_cells, mpm::Transfer<D>&)                                                       \
+  POLDER_SIMD_DECLARE(void, sum_tiles, mpm::Transfer<D>&, int, Reals&)                                              \
+  POLDER_SIMD_DECLARE(void, update_velocities, mpm::Transfer<D>&, double, const Reals&, const Reals&, bool)         \
+  POLDER_SIMD_DECLARE(mpm::MoveResult, update_stress_and_move, mpm::Transfer<D>&, const mpm::MoveOptions&,          \
+                      const Reals*, const Reals&, const Reals&, const Reals*)
+
+namespace polder {
+POLDER_DECLARE_KERNELS(2)
+POLDER_DECLARE_KERNELS(3)
+POLDER_SIMD_DECLARE(std::shared_ptr<const void>, make_law_handle, int, const mpm::MaterialParameters&, bool)
+}  // namespace polder

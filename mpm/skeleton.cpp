@@ -1,0 +1,229 @@
+#include "mpm/skeleton.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "core/error.hpp"
+#include "core/threads.hpp"
+
+namespace polder::mpm {
+
+template <int D>
+Skeleton<D>::Skeleton(Grid<D> grid, SkeletonOptions options, BoundarySet<D> boundaries)
+    : grid_(std::move(grid)), options_(options), boundaries_(std::move(boundaries)) {
+  transfer_.grid = &grid_;
+  transfer_.space = options.space;
+  transfer_.shape = options.shape;
+}
+
+template <int D> ParticleSet<D>& Skeleton<D>::add_body() {
+  bodies_.push_back(std::make_unique<ParticleSet<D>>());
+  return *bodies_.back();
+}
+
+template <int D> void Skeleton<D>::set_laws(const std::vector<MaterialParameters>& materials, bool plastic) {
+  laws_.clear();
+  for (const auto& body : bodies_) laws_.push_back(make_law_handle(D, materials[body->material], plastic));
+  set_bodies();
+}
+
+template <int D> void Skeleton<D>::set_bodies() {
+  transfer_.bodies.clear();
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    transfer_.bodies.push_back({bodies_[b].get(), b < laws_.size() ? laws_[b].get() : nullptr});
+}
+
+template <int D> void Skeleton<D>::allocate() {
+  transfer_.resize();
+  const std::size_t n = grid_.slots();
+  for (Reals* r : {&v_old_, &v_trial_, &v_new_, &v_map_}) r->assign(n * kVector, 0.0);
+  cell_rate_.assign(n, std::numeric_limits<double>::quiet_NaN());
+  boundaries_.update(grid_);
+}
+
+template <int D> bool Skeleton<D>::sort(bool force) {
+  if (!force && travelled_ <= kSkin) return false;
+  std::vector<int> occupied;
+  for (const auto& body : bodies_) {
+    const std::vector<int> numbers = body->occupied_block_numbers(grid_);
+    occupied.insert(occupied.end(), numbers.begin(), numbers.end());
+  }
+  const bool changed = grid_.activate(std::move(occupied));
+  for (const auto& body : bodies_) body->sort(grid_);
+  if (changed) allocate();
+  travelled_ = 0;
+  return changed;
+}
+
+template <int D> void Skeleton<D>::restore(double travelled, double mass_floor, const std::vector<int>& occupied_blocks) {
+  mass_floor_ = mass_floor;
+  grid_.activate(occupied_blocks);
+  allocate();
+  travelled_ = travelled;
+}
+
+template <int D> void Skeleton<D>::scatter(double time) {
+  scatter_state(transfer_, options_.affine, sums_);
+  applied_load_ = Point<D>{};
+  if constexpr (D == 2)
+    for (const SurfaceLoad& load : loads_) {
+      const Point<2> f = load.apply(grid_, options_.shape, time, sums_);
+      for (int d = 0; d < 2; ++d) applied_load_[d] += f[d];
+    }
+  // A node lighter than this share of a full cell's lightest soil carries no force of its own: f / m would be noise.
+  if (mass_floor_ == 0) {
+    double density = std::numeric_limits<double>::infinity();
+    for (const auto& body : bodies_)
+      for (int p = 0; p < body->slots(); ++p)
+        if (body->mass[p] > 0) density = std::min(density, body->mass[p] / body->volume[p]);
+    mass_floor_ = 1e-9 * density * std::pow(grid_.spacing(), D);
+  }
+  parallel_for(grid_.blocks(), [&](int block) {
+    for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
+      const double* s = &sums_[static_cast<std::size_t>(i) * kSum];
+      double* v = &v_old_[static_cast<std::size_t>(i) * kVector];
+      const double inverse = s[0] > 0 ? 1 / s[0] : 0;
+      for (int d = 0; d < D; ++d) v[d] = s[1 + d] * inverse;
+    }
+  });
+}
+
+template <int D>
+void Skeleton<D>::predict(double dt, const Point<D>& gravity, double damping, const Reals* acceleration) {
+  struct Norms {
+    double unbalanced = 0, load = 0;
+  };
+  std::vector<Norms> norms(grid_.blocks());
+  const auto& fixed = boundaries_.fixed_components();
+  parallel_for(grid_.blocks(), [&](int block) {
+    Norms& n = norms[block];
+    for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
+      const double* s = &sums_[static_cast<std::size_t>(i) * kSum];
+      const double* v = &v_old_[static_cast<std::size_t>(i) * kVector];
+      double* u = &v_trial_[static_cast<std::size_t>(i) * kVector];
+      if (!(s[0] > mass_floor_)) {
+        for (int d = 0; d < D; ++d) u[d] = v[d];
+        continue;
+      }
+      for (int d = 0; d < D; ++d) {
+        double a = s[kForce + d] / s[0] + gravity[d];
+        if (acceleration != nullptr) a += (*acceleration)[static_cast<std::size_t>(i) * kVector + d];
+        if (!(fixed[i] >> d & 1)) n.unbalanced += s[0] * s[0] * a * a;
+        n.load += s[0] * s[0] * gravity[d] * gravity[d];
+        if (damping > 0) a *= a * v[d] > 0 ? 1 - damping : a * v[d] < 0 ? 1 + damping : 1.0;
+        u[d] = v[d] + dt * a;
+      }
+    }
+  });
+  double unbalanced = 0, load = 0;
+  for (const Norms& n : norms) unbalanced += n.unbalanced, load += n.load;
+  for (int d = 0; d < D; ++d) load += applied_load_[d] * applied_load_[d];
+  unbalanced_ = std::sqrt(unbalanced);
+  load_norm_ = std::sqrt(load);
+}
+
+template <int D> void Skeleton<D>::constrain(double time, double dt, const Reals* correction, Reals& v, bool record) {
+  v.resize(v_trial_.size());
+  parallel_for(grid_.blocks(), [&](int block) {
+    const std::size_t first = static_cast<std::size_t>(block) * Grid<D>::kCells * kVector;
+    for (std::size_t i = first; i < first + Grid<D>::kCells * kVector; ++i)
+      v[i] = v_trial_[i] + (correction != nullptr ? (*correction)[i] : 0.0);
+  });
+  boundaries_.apply(time, dt, sums_, v, true, record);
+}
+
+template <int D> void Skeleton<D>::project_volumetric(const Reals& v) {
+  const double h = grid_.spacing();
+  constexpr int kCorners = ipow(2, D);
+  // Mass of a corner node whose cells are about a quarter full; lighter corners say the cell is at the surface.
+  const double enough = 0.1 * (mass_floor_ / 1e-9) / kCorners;
+  const bool hoop = options_.space == Space::axisymmetric;
+  parallel_for(grid_.blocks(), [&](int block) {
+    for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
+      cell_rate_[i] = std::numeric_limits<double>::quiet_NaN();
+      const Index<D> cell = grid_.index(i);
+      if (!grid_.is_cell(cell)) continue;
+      double rate = 0;
+      bool full = true;
+      const double radius = grid_.origin()[0] + (cell[0] + 0.5) * h;
+      for (int k = 0; k < kCorners && full; ++k) {
+        Index<D> node = cell;
+        for (int d = 0; d < D; ++d) node[d] += k >> d & 1;
+        const int s = grid_.slot(node);
+        const double r = grid_.origin()[0] + node[0] * h;
+        full = s >= 0 && sums_[static_cast<std::size_t>(s) * kSum] > enough * (hoop ? std::max(r, 0.25 * h) : 1.0);
+        if (!full) break;
+        const double* u = &v[static_cast<std::size_t>(s) * kVector];
+        for (int d = 0; d < D; ++d) {
+          double flux = (k >> d & 1 ? 1 : -1) * u[d] / (h * kCorners / 2);
+          if (hoop) flux *= d == 0 ? r / radius : 1.0;
+          rate += flux;
+        }
+      }
+      if (full) cell_rate_[i] = rate;
+    }
+  });
+  cell_rate_set_ = true;
+}
+
+template <int D> MoveResult Skeleton<D>::gather(double time, double dt) {
+  MoveOptions o;
+  o.dt = dt;
+  o.affine = options_.affine;
+  o.flip = options_.flip;
+  const Reals* rate = cell_rate_set_ ? &cell_rate_ : nullptr;
+  MoveResult r;
+  if (options_.musl) {
+    update_velocities(transfer_, options_.flip, v_old_, v_new_, &v_map_);
+    parallel_for(grid_.blocks(), [&](int block) {
+      for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
+        const double mass = sums_[static_cast<std::size_t>(i) * kSum], inverse = mass > 0 ? 1 / mass : 0;
+        for (int d = 0; d < D; ++d) v_map_[static_cast<std::size_t>(i) * kVector + d] *= inverse;
+      }
+    });
+    boundaries_.apply(time + dt, dt, sums_, v_map_, false, false);
+    r = update_stress_and_move(transfer_, o, nullptr, v_new_, v_map_, rate);
+  } else {
+    o.update_velocity = options_.affine == AffineKind::none;
+    r = update_stress_and_move(transfer_, o, &v_old_, v_new_, v_new_, rate);
+  }
+  if constexpr (D == 2)
+    for (SurfaceLoad& load : loads_) load.move(grid_, options_.shape, dt, v_new_);
+  cell_rate_set_ = false;
+  travelled_ += r.largest_displacement;
+  if (!r.finite || r.largest_displacement > kSkin) {
+    const ParticleSet<D>& set = *bodies_[r.fastest_body];
+    const int p = r.fastest_slot;
+    char text[320];
+    std::snprintf(text, sizeof text,
+                  "%s: point %d of body '%s' near (%.6g, %.6g%s) moves at %.4g m/s, %.3g cells in a step of %.4g s, at time %.6g s",
+                  r.finite ? "runaway velocity" : "velocity is not finite", set.id[p], set.name.c_str(), set.position[0][p],
+                  set.position[1][p], D == 3 ? (", " + std::to_string(set.position[D - 1][p])).c_str() : "", r.largest_speed,
+                  r.largest_displacement, dt, time);
+    throw NumericalError(text);
+  }
+  return r;
+}
+
+template <int D> double Skeleton<D>::wave_speed(const std::vector<MaterialParameters>& materials) const {
+  double fastest = 0;
+  for (const auto& body : bodies_) {
+    const MaterialParameters& m = materials[body->material];
+    double density = std::numeric_limits<double>::infinity();
+    for (int p = 0; p < body->slots(); ++p) {
+      if (body->mass[p] <= 0) continue;
+      double mass = body->mass[p];
+      if (!body->pore_water.empty()) mass += body->pore_water[p] * (body->volume[p] - mass / body->density_solid);
+      density = std::min(density, mass / body->volume[p]);
+    }
+    fastest = std::max(fastest, std::sqrt(m.wave_modulus() / density));
+  }
+  return fastest;
+}
+
+template class Skeleton<2>;
+template class Skeleton<3>;
+
+}  // namespace polder::mpm

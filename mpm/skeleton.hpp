@@ -1,0 +1,121 @@
+// The soil skeleton (and any other deformable body): material points on the background grid with explicit dynamics.
+//
+// A step in the order in which a formulation calls it; what pore water adds goes in between:
+//
+//   sort()          blocks and particle order, only when a point may have left its block's skin
+//   scatter()       mass, momentum, force and volume of the particles at the nodes; v_old
+//   predict()       v_trial = v_old + dt (f / m + g + extra), local damping
+//   constrain()     v = v_trial under the mechanical boundaries
+//   gather()        particle velocities, second mapping (MUSL), strain, stress, motion
+//
+// Stress is updated last from re-mapped momenta (MUSL: Sulsky, Zhou & Schreyer 1995) or from the updated grid velocities
+// (USL). Velocities are blended FLIP/PIC or carried affinely (APIC: Jiang et al. 2015; TPIC: velocity gradient).
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mpm/boundary_set.hpp"
+#include "mpm/surface_load.hpp"
+#include "mpm/transfer.hpp"
+
+namespace polder::mpm {
+
+struct SkeletonOptions {
+  Space space = Space::plane_strain;
+  ShapeKind shape = ShapeKind::gimp;
+  bool musl = true;
+  AffineKind affine = AffineKind::none;  // needs musl = false
+  double flip = 0.99;
+  bool cell_average = true;  // volumetric strain of full cells from the cell's divergence (locking cure)
+};
+
+template <int D> class Skeleton {
+ public:
+  static constexpr int kSum = Transfer<D>::kSum;
+  static constexpr int kVector = Transfer<D>::kVector;
+  static constexpr int kForce = 1 + D;  // first force lane of a sum
+
+  Skeleton(Grid<D> grid, SkeletonOptions options, BoundarySet<D> boundaries);
+  Skeleton(const Skeleton&) = delete;
+  Skeleton& operator=(const Skeleton&) = delete;
+
+  Grid<D>& grid() { return grid_; }
+  const Grid<D>& grid() const { return grid_; }
+  const SkeletonOptions& options() const { return options_; }
+  BoundarySet<D>& boundaries() { return boundaries_; }
+  const BoundarySet<D>& boundaries() const { return boundaries_; }
+  std::vector<SurfaceLoad>& loads() { return loads_; }
+
+  // A body; the reference stays valid. After adding bodies or changing materials call set_laws().
+  ParticleSet<D>& add_body();
+  std::vector<std::unique_ptr<ParticleSet<D>>>& bodies() { return bodies_; }
+  const std::vector<std::unique_ptr<ParticleSet<D>>>& bodies() const { return bodies_; }
+  // Laws of all bodies (by ParticleSet::material). plastic = false: elastic response.
+  void set_laws(const std::vector<MaterialParameters>& materials, bool plastic);
+
+  // Re-sort if needed, or now if `force`. Returns true when slots were renumbered (Grid::carry moves other fields).
+  bool sort(bool force = false);
+  void scatter(double time);
+
+  // acceleration [slots * 4]: added to f / m + g, or null. damping: local damping alpha (Cundall 1987), componentwise.
+  void predict(double dt, const Point<D>& gravity, double damping, const Reals* acceleration);
+
+  // v = v_trial + correction [slots * 4] (or null) under the boundaries at `time`.
+  void constrain(double time, double dt, const Reals* correction, Reals& v, bool record);
+
+  // Volumetric strain rate (D v)_c / V_c of cells whose corners all carry material into cell_rate(), NaN elsewhere, from
+  // the nodal velocities v; used by the next gather().
+  void project_volumetric(const Reals& v);
+
+  // Particles from v_new. Returns what the step moved; throws NumericalError naming the point when a value is not finite.
+  MoveResult gather(double time, double dt);
+
+  // Nodal fields.
+  const Reals& sums() const { return sums_; }
+  Reals& sums() { return sums_; }
+  Reals& v_old() { return v_old_; }
+  Reals& v_new() { return v_new_; }
+  const Reals& v_new() const { return v_new_; }
+  double mass_floor() const { return mass_floor_; }  // nodes lighter than this move with their neighbours' momentum only
+  bool needs_cell_rate() const { return options_.cell_average; }
+
+  // Out-of-balance force of the last predict(): norm over free components of m a before damping, and of the total load
+  // (gravity and surface loads) [N].
+  double unbalanced_force() const { return unbalanced_; }
+  double load_norm() const { return load_norm_; }
+  // Sum of surface loads in the last scatter [N].
+  const Point<D>& applied_load() const { return applied_load_; }
+
+  // Distance travelled since the last sort [cells]; part of a checkpoint.
+  double travelled() const { return travelled_; }
+  void restore(double travelled, double mass_floor, const std::vector<int>& occupied_blocks);
+
+  // Largest drained P-wave speed over all bodies, with the water in the pores counted as mass [m/s].
+  double wave_speed(const std::vector<MaterialParameters>& materials) const;
+
+ private:
+  void set_bodies();
+  void allocate();
+
+  Grid<D> grid_;
+  SkeletonOptions options_;
+  BoundarySet<D> boundaries_;
+  std::vector<SurfaceLoad> loads_;
+  std::vector<std::unique_ptr<ParticleSet<D>>> bodies_;
+  std::vector<std::shared_ptr<const void>> laws_;  // one for each body
+  Transfer<D> transfer_;
+  Reals sums_, v_old_, v_trial_, v_new_, v_map_, cell_rate_;
+  bool cell_rate_set_ = false;
+  double travelled_ = 1e9;
+  double mass_floor_ = 0;
+  double unbalanced_ = 0, load_norm_ = 0;
+  Point<D> applied_load_{};
+};
+
+extern template class Skeleton<2>;
+extern template class Skeleton<3>;
+
+}  // namespace polder::mpm

@@ -1,0 +1,94 @@
+// Transfers between particles and grid: what the particle kernels read and write.
+//
+// Every occupied block of the grid owns a private tile: its nodes, the reach of the stencil and one half cell of skin
+// (kTileSide nodes along each axis, from one node below the block). Particles write only into the tile of their block;
+// then every node sums the tiles of the at most 3^D blocks around it in a fixed order. No atomics, no colours: the bits
+// do not depend on the number of threads.
+//
+// Node sums are eight numbers a node: 2D {m, px, py, fx, fy, V, -, -}, 3D {m, px, py, pz, fx, fy, fz, V}: mass, momentum,
+// force of stress and loads, particle volume. Velocities are four numbers a node (padded).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/grid.hpp"
+#include "core/particles.hpp"
+#include "core/simd_level.hpp"
+#include "mpm/material/parameters.hpp"
+#include "mpm/shape_kind.hpp"
+
+namespace polder::mpm {
+
+enum class AffineKind { none, apic, tpic };
+
+// One body as the kernels see it. law points to a polder::simd_*::Law<D> of the running vector level.
+template <int D> struct Body {
+  ParticleSet<D>* particles = nullptr;
+  const void* law = nullptr;
+};
+
+template <int D> struct Transfer {
+  static constexpr int kTileSide = Grid<D>::kSide + 4;
+  static constexpr int kTileNodes = ipow(kTileSide, D);
+  static constexpr int kSum = 8;    // numbers a node in `sums`
+  static constexpr int kVector = 4; // numbers a node in a velocity array
+  static constexpr int kVolume = D == 2 ? 5 : 7;  // where V sits in a sum
+  static constexpr int kCellSum = 4;
+
+  const Grid<D>* grid = nullptr;
+  Space space = Space::plane_strain;
+  ShapeKind shape = ShapeKind::gimp;
+  std::vector<Body<D>> bodies;
+  Reals tiles;  // work space, kSum numbers a tile node
+
+  // Room for all tiles after grid->activate().
+  void resize() { tiles.resize(static_cast<std::size_t>(grid->occupied_blocks()) * kTileNodes * kSum); }
+};
+
+// Particles to nodes: mass, momentum, internal force and loads, volume into sums [slots * kSum].
+template <int D> void scatter_state(Transfer<D>& transfer, AffineKind affine, Reals& sums);
+
+// Particles to cells by the overlap of their domains: {V of wet soil, V of its solid, conductivity * V, V of all soil} into cells
+// [slots * kCellSum].
+template <int D> void scatter_cells(Transfer<D>& transfer, Reals& cells);
+
+// Particle velocities from nodal ones and, if momentum is not null, their momentum mapped back (MUSL):
+//   v_p = flip (v_p + sum N (v_new - v_old)) + (1 - flip) sum N v_new
+// momentum [slots * kVector].
+template <int D>
+void update_velocities(Transfer<D>& transfer, double flip, const Reals& v_old, const Reals& v_new, Reals* momentum);
+
+struct MoveOptions {
+  double dt = 0;
+  AffineKind affine = AffineKind::none;
+  bool update_velocity = false;  // USL: blend velocities here too (v_old must be given)
+  double flip = 0.99;
+};
+
+struct MoveResult {
+  double largest_displacement = 0;  // of any point and axis in this step [cells]
+  double largest_speed = 0;         // [m/s]
+  int fastest_body = -1, fastest_slot = -1;
+  bool finite = true;
+};
+
+// Velocity gradient from v_gradient, stress by the law, position by v_move, volume and domain by the strain.
+// cell_rate: volumetric strain rate to use in place of the particle's own [slots, NaN = keep], or null.
+template <int D>
+MoveResult update_stress_and_move(Transfer<D>& transfer, const MoveOptions& options, const Reals* v_old,
+                                  const Reals& v_move, const Reals& v_gradient, const Reals* cell_rate);
+
+// Sum of the private tiles at every node. width = kSum, kVector or kCellSum.
+template <int D> void sum_tiles(Transfer<D>& transfer, int width, Reals& out);
+
+// A law of the running vector level; keep the handle as long as kernels use it.
+std::shared_ptr<const void> make_law_handle(int dimension, const MaterialParameters& material, bool plastic);
+
+// Bytes of tiles and sums for each occupied block, for estimates.
+template <int D> std::size_t bytes_per_block() {
+  using T = Transfer<D>;
+  return sizeof(double) * (T::kTileNodes * T::kSum + Grid<D>::kCells * (T::kSum + 3 * T::kVector + T::kCellSum));
+}
+
+}  // namespace polder::mpm
