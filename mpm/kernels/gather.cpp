@@ -266,7 +266,7 @@ POLDER_INLINE void gather_strain(const MoveFrame<D>& m, ParticleSet<D>& set, int
 
   for (int k = 0; k < StressBatch<D>::kStress; ++k) batch.stress[u][k] = load(&set.stress[k][p]);
   for (std::size_t k = 0; k < set.state.size(); ++k) batch.state[u][k] = load(&set.state[k][p]);
-  rotate_stress<D>(batch.gradient[u], batch.stress[u]);
+  rotate_stress(batch.gradient[u], batch.stress[u]);
   move_pack<D>(set, p, real, x, l, carried, batch.strain[u], m.hoop, dt, m.h, body, result);
 }
 
