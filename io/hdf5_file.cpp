@@ -118,8 +118,9 @@ void Image::write() {
   // The core driver's handle is the address of its buffer: the file's bytes without another copy of them.
   void* handle = nullptr;
   require(H5Fget_vfd_handle(file_, H5P_DEFAULT, &handle) >= 0, path_, "file");
-  hsize_t size = 0;
-  require(H5Fget_filesize(file_, &size) >= 0, path_, "file");
+  // The buffer is larger than the file: it grows in steps. This asks for the file's size only.
+  const ssize_t size = H5Fget_file_image(file_, nullptr, 0);
+  require(size > 0, path_, "file");
   write_file_atomically(path_, std::span(*static_cast<std::byte**>(handle), static_cast<std::size_t>(size)));
   file_.reset();
 }
