@@ -1,0 +1,109 @@
+// The plastic step with strength taken at its end: find the increment x of plastic deviatoric strain for
+// which the return to the surface of strength(kappa + x) produces just that plastic strain,
+//   h(x) = k(x) - x = 0,      k(x) = sqrt(2/3 e_p : e_p) of the exact return at strength(kappa + x).
+//
+// k is continuous, k(0) >= 0, and k(x) < `bound` because no return increases a difference of principal
+// stresses. So a root exists for every strength law, however brittle. Where softening is slower than elastic
+// unloading (k' < 1) it is the only one. Where it is steeper (k' > 1, snap-back: no equilibrium path under
+// strain control), the stress drops at constant strain until the strength law lets it rest again: the first
+// root that plastic strain growing from zero meets. To find that one with piecewise linear strength, knots
+// are visited in ascending order first; between knots (and for an exponential, whose k is concave) there is
+// one root with k(0) > 0.
+//
+// Bracketed secant iteration; a lane freezes when it has converged, so its bits do not depend on its
+// neighbours. The final stress lies on the surface of strength(kappa + x) to rounding whatever the accuracy
+// of x.
+#pragma once
+
+#include "mpm/material/strength.hpp"
+
+namespace polder::POLDER_SIMD_NAMESPACE {
+
+template <class Strength>
+class PlasticCorrector {
+ public:
+  using Real = typename Strength::Real;
+  using Particle = typename Strength::Particle;
+
+  PlasticCorrector(const Elasticity& elasticity, const Strength& strength)
+      : elasticity_(elasticity), strength_(strength) {}
+
+  // trial: ordered principal stresses. start: strength at the beginning of the step. Lanes not in `yields`
+  // may come out as anything. Returns the increment of plastic deviatoric strain.
+  POLDER_INLINE Pack correct(const Particle& particle, const StrengthState<Real>& start,
+                             const ReturnCoefficients<Real>& coefficients, const Pack (&trial)[3],
+                             Mask yields, Pack (&s)[3]) const {
+    return_to_surface(elasticity_, start, coefficients, trial, s);
+    const Pack first = plastic_increment(elasticity_, trial, s);
+    if (!strength_.varies()) return first;
+    Pack x = first;
+    iterate(particle, trial, yields, x, s);
+    return x;
+  }
+
+ private:
+  // k(x) - x, and the stress that belongs to it.
+  [[gnu::noinline]] Pack residual(const Particle& particle, const Pack (&trial)[3], Pack x,
+                                  Pack (&s)[3]) const {
+    const StrengthState<Real> m = strength_.at(particle, x);
+    return_to_surface(elasticity_, m, ReturnCoefficients<Real>(elasticity_, m), trial, s);
+    return plastic_increment(elasticity_, trial, s) - x;
+  }
+
+  // On entry x = k(0).
+  [[gnu::noinline]] void iterate(const Particle& particle, const Pack (&trial)[3], Mask active, Pack& x,
+                                 Pack (&s)[3]) const {
+    const double shear = elasticity_.shear;
+    const Pack size = abs(trial[0]) + abs(trial[1]) + abs(trial[2]);
+    const Pack noise = size * (4 * std::numeric_limits<double>::epsilon() / shear);  // rounding of k
+    Pack low = Pack{}, at_low = x;                                                   // h(low) > 0
+    Pack high = (trial[0] - trial[2]) * (1 / shear) + noise;                         // h(high) <= 0
+    active &= x > noise;
+
+    for (int j = 0; j < strength_.knots(); ++j) {
+      const Pack at = strength_.knot(j, particle);
+      const Mask visit = active & (at > low) & (at < high);
+      if (!any(visit)) continue;
+      const Pack h = residual(particle, trial, at, s);
+      const Mask beyond = visit & (h <= 0), before = visit & (h > 0);
+      high = select(beyond, at, high);
+      low = select(before, at, low);
+      at_low = select(before, h, at_low);
+    }
+
+    Pack last = low, at_last = at_low;
+    x = select(active, min(low + at_low, high), x);
+    Pack width = high - low;
+    for (int i = 1; i <= kMaxIterations && any(active); ++i) {
+      const Pack h = residual(particle, trial, x, s);
+      const Mask above = active & (h > 0), below = active & ~above;
+      low = select(above, x, low);
+      high = select(below, x, high);
+      const Pack slope = (h - at_last) / select(x == last, broadcast(1.0), x - last);
+      Pack next = x - h / select(slope == 0, broadcast(-1.0), slope);
+      const Mask secant = (next > low) & (next < high) & (slope < 0);
+      const Mask done = (abs(h) <= noise) | (high - low <= 4e-16 * high);
+      // one more secant step from here is worth two further evaluations: take it and stop
+      const Mask last_step = (abs(h) <= 1e-7 * x) & secant & ~done;
+      Mask bisect = ~secant;
+      if (i % 3 == 0) {  // the bracket must have halved since the last time
+        bisect |= high - low > 0.5 * width;
+        width = high - low;
+      }
+      next = select(bisect & ~last_step, 0.5 * (low + high), next);
+      last = select(active, x, last);
+      at_last = select(active, h, at_last);
+      x = select(active & ~done, next, x);
+      active &= ~(done | last_step);
+    }
+    residual(particle, trial, x, s);
+  }
+
+  static constexpr int kMaxIterations =
+      120;  // bisection alone would need 3 * 53 at worst; secant steps need 2 to 4
+
+  const Elasticity& elasticity_;
+  const Strength& strength_;
+};
+
+}  // namespace polder::POLDER_SIMD_NAMESPACE

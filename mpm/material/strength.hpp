@@ -1,0 +1,181 @@
+// Strength of a pack of particles as a function of the plastic deviatoric strain, in the three forms the
+// frictional law is built with. Each class offers
+//   particle(state)          what the strength of these particles depends on
+//   at(particle, increment)  strength after that increment of plastic strain; the dilation angle is the mean
+//   over the
+//                            increment, so that the volume change of a step is exact to second order, also
+//                            across knots
+//   lowest_cohesion(particle), bounds()   what they can never fall below, for the elastic skip
+//   varies(), knots(), knot(j, particle)  does at() change with the increment, and the strains where its
+//   slope jumps
+#pragma once
+
+#include <limits>
+
+#include "mpm/material/curve.hpp"
+#include "mpm/material/pack_math.hpp"
+#include "mpm/material/principal_return.hpp"
+
+namespace polder::POLDER_SIMD_NAMESPACE {
+
+struct StrengthBounds {
+  double sin_lowest = 0, sin_highest = 0, cos_lowest = 1;  // of the friction angle
+  double tension = std::numeric_limits<double>::infinity();
+};
+
+// Mohr-Coulomb, all parameters constant.
+class ConstantStrength {
+ public:
+  using Real = double;
+  struct Particle {};
+  explicit ConstantStrength(const mpm::MaterialParameters& m) {
+    const double friction = mpm::compile_curve(m.friction).start;
+    state_.sin_friction = std::sin(friction);
+    state_.cos_friction = std::cos(friction);
+    state_.cohesion = mpm::compile_curve(m.cohesion).start;
+    state_.sin_dilation = std::sin(mpm::compile_curve(m.dilation).start);
+    const double apex =
+        friction > 0 ? state_.cohesion / std::tan(friction) : std::numeric_limits<double>::infinity();
+    state_.tension = apex < m.tension_cutoff ? apex : m.tension_cutoff;
+    bounds_ = {state_.sin_friction, state_.sin_friction, state_.cos_friction, state_.tension};
+  }
+  POLDER_INLINE Particle particle(const Pack*) const { return {}; }
+  POLDER_INLINE StrengthState<double> at(Particle, Pack) const { return state_; }
+  POLDER_INLINE double lowest_cohesion(Particle) const { return state_.cohesion; }
+  POLDER_INLINE StrengthBounds bounds() const { return bounds_; }
+  static constexpr bool varies() { return false; }
+  static constexpr int knots() { return 0; }
+  POLDER_INLINE Pack knot(int, Particle) const { return Pack{}; }
+
+ private:
+  StrengthState<double> state_;
+  StrengthBounds bounds_;
+};
+
+POLDER_INLINE Pack value_of(const mpm::Curve& c, Pack kappa) {
+  if (c.kind == mpm::Curve::Kind::exponential)
+    return c.residual + (c.start - c.residual) * exp(-c.rate * kappa);
+  Pack v = broadcast(c.start);
+  for (int i = 0; i + 1 < c.knots; ++i)
+    v += c.slope[i] * clamp(kappa - c.strain[i], 0, c.strain[i + 1] - c.strain[i]);
+  return v;
+}
+
+// Mean of the curve over [from, to].
+POLDER_INLINE Pack mean_of(const mpm::Curve& c, Pack from, Pack to) {
+  if (c.kind == mpm::Curve::Kind::exponential)
+    return c.residual + (c.start - c.residual) * exp(-c.rate * from) * mean_decay(c.rate * (to - from));
+  Pack sum = Pack{};  // integral of (curve - start)
+  for (int i = 0; i + 1 < c.knots; ++i) {
+    const double s = c.strain[i], e = c.strain[i + 1];
+    const Pack a = clamp(from, s, e), b = clamp(to, s, e);
+    // the part inside the segment, and the part beyond it where the segment's whole rise counts
+    sum += c.slope[i] * ((b - a) * (0.5 * (a + b) - s) + (e - s) * (max(to, e) - max(from, e)));
+  }
+  const Mask moves = to > from;
+  return select(moves, c.start + sum / select(moves, to - from, broadcast(1.0)), value_of(c, from));
+}
+
+// Mohr-Coulomb with parameters mobilised by plastic strain, and capillary cohesion.
+class MobilisedStrength {
+ public:
+  using Real = Pack;
+  struct Particle {
+    Pack kappa, capillary;
+  };
+
+  MobilisedStrength(const mpm::MaterialParameters& m, int capillary_index)
+      : friction_(mpm::compile_curve(m.friction)),
+        dilation_(mpm::compile_curve(m.dilation)),
+        cohesion_(mpm::compile_curve(m.cohesion)),
+        capillary_(mpm::compile_curve(m.capillary_cohesion)),
+        tension_(m.tension_cutoff),
+        capillary_index_(capillary_index) {
+    varies_ = friction_.varies() || dilation_.varies() || cohesion_.varies() || capillary_.varies();
+    bounds_ = {std::sin(friction_.lowest), std::sin(friction_.highest), std::cos(friction_.highest),
+               m.tension_cutoff};
+    for (const mpm::Curve* c : {&friction_, &dilation_, &cohesion_, &capillary_})
+      for (int i = 0; i < c->knots; ++i) add_knot(c->strain[i]);
+  }
+
+  POLDER_INLINE Particle particle(const Pack* state) const {
+    return {state[0], capillary_index_ < 0 ? Pack{} : state[capillary_index_]};
+  }
+
+  POLDER_INLINE StrengthState<Pack> at(const Particle& p, Pack increment) const {
+    const Pack kappa = p.kappa + increment;
+    StrengthState<Pack> m;
+    m.sin_friction = friction_.varies() ? sine(value_of(friction_, kappa)) : broadcast(bounds_.sin_lowest);
+    m.cos_friction =
+        friction_.varies() ? sqrt(1 - m.sin_friction * m.sin_friction) : broadcast(bounds_.cos_lowest);
+    m.cohesion = value_of(cohesion_, kappa);
+    if (capillary_index_ >= 0) m.cohesion += p.capillary * value_of(capillary_, kappa);
+    m.sin_dilation =
+        sine(dilation_.varies() ? mean_of(dilation_, p.kappa, kappa) : broadcast(dilation_.start));
+    const Mask apex = m.sin_friction > 0;
+    const Pack limit = m.cohesion * m.cos_friction / select(apex, m.sin_friction, broadcast(1.0));
+    m.tension = select(apex, min(limit, tension_), broadcast(tension_));
+    return m;
+  }
+
+  POLDER_INLINE double lowest_cohesion(const Particle&) const { return cohesion_.lowest; }
+  POLDER_INLINE StrengthBounds bounds() const { return bounds_; }
+  POLDER_INLINE bool varies() const { return varies_; }
+  POLDER_INLINE int knots() const { return n_knots_; }
+  POLDER_INLINE Pack knot(int j, const Particle& p) const { return knots_[j] - p.kappa; }
+
+ private:
+  void add_knot(double strain) {  // ascending, each once
+    int at = 0;
+    while (at < n_knots_ && knots_[at] < strain) ++at;
+    if (at < n_knots_ && knots_[at] == strain) return;
+    for (int i = n_knots_; i > at; --i) knots_[i] = knots_[i - 1];
+    knots_[at] = strain;
+    ++n_knots_;
+  }
+
+  mpm::Curve friction_, dilation_, cohesion_, capillary_;
+  double tension_;
+  int capillary_index_;
+  bool varies_;
+  StrengthBounds bounds_;
+  double knots_[4 * mpm::kMaxKnots];
+  int n_knots_ = 0;
+};
+
+// Tresca: shear strength peak + softening_modulus kappa, not below min(peak, residual); the peak belongs to
+// the particle.
+class UndrainedStrength {
+ public:
+  using Real = Pack;
+  struct Particle {
+    Pack kappa, peak, residual;
+  };
+
+  UndrainedStrength(const mpm::MaterialParameters& m, int peak_index)
+      : softening_(m.softening_modulus), residual_(m.residual_strength), peak_index_(peak_index) {}
+
+  POLDER_INLINE Particle particle(const Pack* state) const {
+    return {state[0], state[peak_index_], min(state[peak_index_], residual_)};
+  }
+  POLDER_INLINE Pack shear_strength(const Particle& p, Pack increment) const {
+    return max(p.peak + softening_ * (p.kappa + increment), p.residual);
+  }
+  POLDER_INLINE StrengthState<Pack> at(const Particle& p, Pack increment) const {
+    return {Pack{}, broadcast(1.0), shear_strength(p, increment), Pack{},
+            broadcast(std::numeric_limits<double>::infinity())};
+  }
+  POLDER_INLINE Pack lowest_cohesion(const Particle& p) const { return varies() ? p.residual : p.peak; }
+  POLDER_INLINE StrengthBounds bounds() const { return {}; }
+  POLDER_INLINE bool varies() const { return softening_ != 0; }
+  POLDER_INLINE int knots() const { return varies() ? 1 : 0; }
+  POLDER_INLINE Pack knot(int, const Particle& p) const {
+    return (p.residual - p.peak) / softening_ - p.kappa;
+  }
+
+ private:
+  double softening_, residual_;
+  int peak_index_;
+};
+
+}  // namespace polder::POLDER_SIMD_NAMESPACE
