@@ -16,8 +16,8 @@ using namespace polder;
 
 namespace {
 
-constexpr double kEnd = 10.0;      // [s]
-constexpr double kSpacing = 0.1;   // of the material points [m]
+constexpr double kEnd = 10.0;     // [s]
+constexpr double kSpacing = 0.1;  // of the material points [m]
 constexpr double kUnitWeight = 9810.0;
 
 double phreatic(double x) {
