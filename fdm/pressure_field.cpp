@@ -1,0 +1,378 @@
+#include "fdm/pressure_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/error.hpp"
+#include "fdm/loops.hpp"
+
+namespace polder::fdm {
+namespace {
+
+// A basin counts as closed when storage and open faces together conduct less than this part of its links:
+// below it the level of the pressure would be decided by rounding.
+constexpr double kClosedBasin = 1e-11;
+
+}  // namespace
+
+double Discharge::total() const {
+  double sum = surface;
+  for (double q : boundary) sum += q;
+  return sum;
+}
+
+template <int D>
+PressureField<D>::PressureField(const WaterCells<D>& cells, const WaterProperties<D>& water,
+                                SolverKind solver)
+    : cells_(cells), water_(water), solver_(make_solver<D>(solver)) {
+  if (!(water.density > 0) || !(water.bulk_modulus > 0))
+    throw InputError("water: density and bulk modulus must be positive");
+}
+
+template <int D>
+PressureField<D>::~PressureField() = default;
+
+template <int D>
+const char* PressureField<D>::solver_name() const {
+  return solver_->name();
+}
+
+template <int D>
+void PressureField<D>::carry() {
+  const Grid<D>& grid = cells_.grid();
+  grid.carry(p_);
+  dp_.assign(grid.slots(), 0);
+  grid_revision_ = grid.revision();
+}
+
+template <int D>
+void PressureField<D>::refresh() {
+  const Grid<D>& grid = cells_.grid();
+  if (p_.empty()) carry();
+  if (grid_revision_ != grid.revision())
+    throw std::logic_error("PressureField: the grid changed and carry() was not called");
+  if (cells_revision_ == cells_.revision()) return;
+  cells_revision_ = cells_.revision();
+  gradient_.build(cells_);
+  for (int s = 0; s < grid.slots(); ++s)
+    if (!cells_.active(s)) p_[s] = 0;
+  std::fill(dp_.begin(), dp_.end(), 0.0);
+  node_grad_.assign(static_cast<std::size_t>(grid.slots()) * kStride, 0);
+
+  const std::size_t n = cells_.count(), interior = cells_.interior_faces().size();
+  const std::size_t boundary = cells_.boundary_faces().size();
+  for (Reals* a : {&flow_, &conductance_}) a->assign(interior + boundary, 0);
+  for (Reals* a : {&boundary_inertia_, &boundary_darcy_}) a->assign(boundary, 0);
+  for (Reals* a : {&storage_, &sink_, &rhs_, &x_}) a->assign(n, 0);
+  divergence_.assign(n, 0);
+  discharge_.boundary.assign(cells_.conditions().boundaries.size(), 0);
+  balance_ = {};
+  find_basins();
+
+  Connectivity<D> connectivity;
+  connectivity.cells.reserve(n);
+  connectivity.links.reserve(interior);
+  for (const ActiveCell<D>& c : cells_.cells()) connectivity.cells.push_back(c.index);
+  for (const InteriorFace<D>& f : cells_.interior_faces())
+    connectivity.links.push_back({f.low, f.high, f.axis});
+  solver_->analyse(connectivity);
+}
+
+template <int D>
+void PressureField<D>::require_current(std::size_t slots) const {
+  if (cells_revision_ != cells_.revision() || cells_revision_ == 0)
+    throw std::logic_error("PressureField: the active cells changed and refresh() was not called");
+  if (slots < static_cast<std::size_t>(cells_.grid().slots()))
+    throw std::logic_error("PressureField: an array does not cover the grid");
+}
+
+// ---- assembly
+// -------------------------------------------------------------------------------------------------------
+
+template <int D>
+double PressureField<D>::face_mobility(const FaceNodes<D>& nodes, std::span<const double> mobility) const {
+  double sum = 0;
+  int count = 0;
+  for (int node : nodes) {
+    sum += mobility[node];
+    count += mobility[node] > 0;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+// (D v)_c: flow of the nodal velocity out of the cell [m3/s].
+template <int D>
+double PressureField<D>::divergence(const ActiveCell<D>& cell, std::span<const double> velocity) const {
+  constexpr double kMean = 1.0 / ipow(2, D - 1);
+  double sum = 0;
+  for (int d = 0; d < D; ++d) {
+    double low = 0, high = 0;
+    for (int corner = 0; corner < ipow(2, D); ++corner) {
+      const double v = velocity[static_cast<std::size_t>(cell.nodes[corner]) * kStride + d];
+      ((corner >> d) & 1 ? high : low) += v;
+    }
+    sum += kMean * (high * cell.areas[2 * d + 1] - low * cell.areas[2 * d]);
+  }
+  return sum;
+}
+
+// Volume flow out of the soil at the present pressure, - kappa (dp/dn - rho_w g.n) A.
+template <int D>
+double PressureField<D>::darcy_outflow(const BoundaryFace<D>& f, double darcy_mobility) const {
+  if (!f.open) return 0;
+  const double gradient = (f.pressure - p_[cells_.cells()[f.cell].slot]) / f.distance;
+  return -darcy_mobility * f.area * (gradient - water_.density * water_.gravity[f.axis] * f.outward);
+}
+
+template <int D>
+void PressureField<D>::face_terms(std::span<const double> mobility, std::span<const double> darcy_mobility,
+                                  double chi) {
+  const auto cells = cells_.cells();
+  const auto interior = cells_.interior_faces();
+  const auto boundary = cells_.boundary_faces();
+  const int n_interior = static_cast<int>(interior.size());
+  const double per_spacing = 1 / cells_.grid().spacing();
+  const bool inertia = !mobility.empty();
+  if (inertia && chi > 0)
+    gradient_.evaluate(cells_, p_, BoundaryValues::present, WallNormal::none, node_grad_);
+
+  for_each(n_interior, [&](int i) {
+    const InteriorFace<D>& f = interior[i];
+    const int low = cells[f.low].slot, high = cells[f.high].slot;
+    const double gradient = (p_[high] - p_[low]) * per_spacing;
+    const double kappa = 0.5 * (darcy_mobility[low] + darcy_mobility[high]);
+    double flow = kappa * (gradient - water_.density * water_.gravity[f.axis]);
+    double conductance = kappa;
+    if (inertia) {
+      const double lam = face_mobility(f.nodes, mobility);
+      conductance += lam * (1 + chi);
+      if (chi > 0) {
+        double mean = 0;
+        for (int node : f.nodes) mean += node_grad_[static_cast<std::size_t>(node) * kStride + f.axis];
+        flow += chi * lam * (gradient - mean / static_cast<double>(f.nodes.size()));
+      }
+    }
+    flow_[i] = f.area * flow;  // enters the low cell, leaves the high one
+    conductance_[i] = f.area * per_spacing * conductance;
+  });
+
+  for_each(static_cast<int>(boundary.size()), [&](int b) {
+    const BoundaryFace<D>& f = boundary[b];
+    const double kappa = darcy_mobility[cells[f.cell].slot];
+    const double lam = inertia && f.open ? face_mobility(f.nodes, mobility) : 0;
+    boundary_darcy_[b] = kappa;
+    boundary_inertia_[b] = lam * f.area / f.distance;
+    flow_[n_interior + b] = -darcy_outflow(f, kappa);
+    conductance_[n_interior + b] = f.open ? (kappa + lam) * f.area / f.distance : 0;
+  });
+}
+
+// Right-hand side, sinks and the rounding floor of the right-hand side, cell by cell from the faces.
+template <int D>
+void PressureField<D>::gather_sinks() {
+  const auto cells = cells_.cells();
+  const int n_interior = static_cast<int>(cells_.interior_faces().size());
+  for_each(cells_.count(), [&](int c) {
+    double rhs = -divergence_[c], sink = storage_[c], diagonal = storage_[c];
+    for (int side = 0; side < 2 * D; ++side) {
+      const int face = cells[c].faces[side];
+      if (face < 0) continue;
+      diagonal += conductance_[face];
+      if (face >= n_interior) {
+        rhs += flow_[face];
+        sink += conductance_[face];
+      } else {
+        rhs += side % 2 ? flow_[face] : -flow_[face];
+      }
+    }
+    rhs_[c] = rhs;
+    sink_[c] = sink;
+    x_[c] = diagonal;
+  });
+  double p2 = 0;
+  for (int c = 0; c < cells_.count(); ++c) {
+    const double p = p_[cells[c].slot];
+    p2 += x_[c] * p * p;
+    if (x_[c] > 0) continue;
+    const bool walled =
+        std::all_of(cells[c].faces.begin(), cells[c].faces.end(), [](int f) { return f < 0; });
+    if (walled && storage_[c] == 0) continue;  // a basin of one cell; pinned
+    std::string place;
+    for (double x : cells_.centre(cells[c].index)) place += (place.empty() ? "" : ", ") + std::to_string(x);
+    throw NumericalError("pressure equation: the cell at (" + place +
+                         ") m is coupled to nothing: no nodal mass, no conductivity and no storage");
+  }
+  accuracy_.floor = 8 * std::numeric_limits<double>::epsilon() * std::sqrt(p2);
+}
+
+template <int D>
+void PressureField<D>::find_basins() {
+  const int n = cells_.count();
+  std::vector<int> root(n);
+  for (int c = 0; c < n; ++c) root[c] = c;
+  const auto find = [&](int c) {
+    while (root[c] != c) c = root[c] = root[root[c]];
+    return c;
+  };
+  for (const InteriorFace<D>& f : cells_.interior_faces()) {
+    const int a = find(f.low), b = find(f.high);
+    root[std::max(a, b)] = std::min(a, b);
+  }
+  basin_.assign(n, -1);
+  basin_first_.clear();
+  for (int c = 0; c < n; ++c) {
+    const int first = find(c);  // the lowest number of the set, met first
+    if (first == c) {
+      basin_[c] = static_cast<int>(basin_first_.size());
+      basin_first_.push_back(c);
+    } else {
+      basin_[c] = basin_[first];
+    }
+  }
+  basin_sink_.assign(basin_first_.size(), 0);
+  basin_scale_.assign(basin_first_.size(), 0);
+}
+
+// Holds the increment of the first cell of every closed basin at zero: a sink there as large as the cell's
+// links. With a compatible right-hand side (no net inflow) the sink takes nothing and the solution is exact;
+// otherwise what it takes shows as the defect of the balance.
+template <int D>
+void PressureField<D>::pin_closed_basins() {
+  const auto interior = cells_.interior_faces();
+  std::fill(basin_sink_.begin(), basin_sink_.end(), 0.0);
+  std::fill(basin_scale_.begin(), basin_scale_.end(), 0.0);
+  for (int c = 0; c < cells_.count(); ++c) basin_sink_[basin_[c]] += sink_[c];
+  for (std::size_t f = 0; f < interior.size(); ++f) basin_scale_[basin_[interior[f].low]] += conductance_[f];
+  pinned_ = 0;
+  for (std::size_t b = 0; b < basin_first_.size(); ++b) {
+    if (basin_sink_[b] > kClosedBasin * basin_scale_[b]) continue;
+    const int c = basin_first_[b];
+    double links = 0;
+    for (int face : cells_.cells()[c].faces)
+      if (face >= 0 && face < static_cast<int>(interior.size())) links += conductance_[face];
+    sink_[c] += links > 0 ? links : 1;
+    if (links == 0) rhs_[c] = 0;
+    ++pinned_;
+  }
+}
+
+// ---- solution
+// -------------------------------------------------------------------------------------------------------
+
+template <int D>
+SolveReport PressureField<D>::solve_increment() {
+  const auto cells = cells_.cells();
+  gather_sinks();
+  pin_closed_basins();
+  const SystemValues system{
+      sink_, std::span<const double>(conductance_).first(cells_.interior_faces().size()), rhs_};
+  const SolveReport report = solver_->solve(system, accuracy_, x_);
+  for_each(cells_.count(), [&](int c) {
+    dp_[cells[c].slot] = x_[c];
+    p_[cells[c].slot] += x_[c];
+  });
+  return report;
+}
+
+template <int D>
+SolveReport PressureField<D>::solve(const PressureStep& step) {
+  const std::size_t slots = cells_.grid().slots();
+  require_current(std::min({p_.size(), step.velocity.size() / kStride, step.mobility.size(),
+                            step.porosity.size(), step.darcy_mobility.size()}));
+  if (!(step.dt > 0)) throw std::logic_error("PressureField: the time step must be positive");
+  const auto cells = cells_.cells();
+  const auto boundary = cells_.boundary_faces();
+  if (p_.size() != slots)
+    throw std::logic_error("PressureField: the grid changed and carry() was not called");
+
+  face_terms(step.mobility, step.darcy_mobility, step.rhie_chow);
+  for_each(cells_.count(), [&](int c) {
+    divergence_[c] = divergence(cells[c], step.velocity);
+    storage_[c] = step.porosity[cells[c].slot] / water_.bulk_modulus * cells[c].volume / step.dt;
+  });
+  const SolveReport report = solve_increment();
+
+  balance_ = {};
+  for (int c = 0; c < cells_.count(); ++c) {
+    const double stored = storage_[c] * x_[c];
+    balance_.storage += stored;
+    balance_.skeleton += divergence_[c];
+    balance_.magnitude += std::abs(stored) + std::abs(divergence_[c]);
+  }
+  for (std::size_t b = 0; b < boundary.size(); ++b) {
+    const double corrected = boundary_inertia_[b] * x_[boundary[b].cell];
+    const double outflow = darcy_outflow(boundary[b], boundary_darcy_[b]);
+    balance_.projection += corrected;
+    balance_.outflow += outflow;
+    balance_.magnitude += std::abs(corrected) + std::abs(outflow);
+  }
+  return report;
+}
+
+template <int D>
+SolveReport PressureField<D>::steady(std::span<const double> darcy_mobility) {
+  require_current(std::min(p_.size(), darcy_mobility.size()));
+  const auto cells = cells_.cells();
+  for (const ActiveCell<D>& c : cells)
+    if (!(darcy_mobility[c.slot] > 0))
+      throw NumericalError("steady seepage needs a positive hydraulic conductivity in every cell with water");
+  std::fill(p_.begin(), p_.end(), 0.0);
+  std::fill(storage_.begin(), storage_.end(), 0.0);
+  std::fill(divergence_.begin(), divergence_.end(), 0.0);
+  SolveReport report;
+  for (int pass = 0; pass < 2; ++pass) {  // the second solves for what rounding and tolerance left
+    face_terms({}, darcy_mobility, 0);
+    const SolveReport r = solve_increment();
+    report.iterations += r.iterations;
+    report.residual = r.residual;
+  }
+  std::fill(dp_.begin(), dp_.end(), 0.0);
+  return report;
+}
+
+// ---- evaluation
+// -----------------------------------------------------------------------------------------------------
+
+template <int D>
+void PressureField<D>::node_gradient(std::span<const double> field, BoundaryValues values, WallNormal walls,
+                                     std::span<double> out) {
+  require_current(std::min(field.size(), out.size() / kStride));
+  gradient_.evaluate(cells_, field, values, walls, out);
+}
+
+template <int D>
+void PressureField<D>::cell_divergence(std::span<const double> velocity, std::span<double> out) const {
+  const auto cells = cells_.cells();
+  std::fill(out.begin(), out.end(), 0.0);
+  for_each(cells_.count(),
+           [&](int c) { out[cells[c].slot] = divergence(cells[c], velocity) / cells[c].volume; });
+}
+
+template <int D>
+const Discharge& PressureField<D>::discharge() {
+  const auto boundary = cells_.boundary_faces();
+  discharge_.surface = 0;
+  std::fill(discharge_.boundary.begin(), discharge_.boundary.end(), 0.0);
+  for (std::size_t b = 0; b < boundary.size(); ++b) {
+    const double q = darcy_outflow(boundary[b], boundary_darcy_[b]);
+    (boundary[b].boundary < 0 ? discharge_.surface : discharge_.boundary[boundary[b].boundary]) += q;
+  }
+  return discharge_;
+}
+
+template <int D>
+WaterBalance PressureField<D>::balance(std::span<const double> velocity) const {
+  WaterBalance result = balance_;
+  result.projection = 0;
+  result.skeleton = 0;
+  for (const ActiveCell<D>& c : cells_.cells()) {
+    result.skeleton += divergence(c, velocity);
+  }
+  return result;
+}
+
+template class PressureField<2>;
+template class PressureField<3>;
+
+}  // namespace polder::fdm

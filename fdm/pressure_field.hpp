@@ -1,0 +1,159 @@
+// Pore-water pressure in the grid's cells, one-layer formulation, saturated soil: incremental projection of
+// the skeleton's velocity together with generalised Darcy flow, implicit in time.
+//
+// Mass balance of water and (incompressible) grains over an active cell of volume V, with the inertia of the
+// water relative to the skeleton neglected:
+//   (n / Kw) V dp/dt + integral of div v + sum_f A_f q_f = 0,   q = -(k / gamma_w) (grad p - rho_w g).
+// With v = v* - mobility grad dp at the faces (incremental pressure correction: Van Kan 1986, SIAM J. Sci.
+// Stat. Comput. 7), a step solves for dp = p^{n+1} - p^n
+//   (n / Kw) V/dt dp_c + sum_f A_f/d_f [ Lam_f (1 + chi*) + kappa_f ] (dp_c - dp_e)
+//     = - (D v*)_c + sum_f A_f kappa_f [ (p_e - p_c)/d_f - rho_w g.n_f ]
+//       + chi sum_interior A_f Lam_f [ (p_e - p_c)/h - mean of the nodal gradients . n_f ],
+// Lam_f the mean mobility dt vol/m of the face's nodes (nodes without mass left out), kappa = k / gamma_w the
+// mean of the two cells (the cell's own at boundaries), d_f the distance between the two pressures (h, theta
+// h, h/2), chi* = chi on interior faces, else 0. The last sum is the momentum interpolation of Rhie & Chow
+// (1983, AIAA J. 21) on the total pressure; it removes the checkerboard which the compact operator cannot
+// see, and is zero for linear p.
+//
+// Pressures [Pa], compression positive; zero in inactive cells. Discharges [m3/s] per metre of thickness
+// (plane strain), per radian (axisymmetric) or total (3D), positive when water leaves the soil.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/aligned.hpp"
+#include "fdm/linear_system.hpp"
+#include "fdm/node_gradient.hpp"
+#include "fdm/water_cells.hpp"
+
+namespace polder::fdm {
+
+template <int D>
+struct WaterProperties {
+  double density = 1000;                                          // [kg/m3]
+  double bulk_modulus = std::numeric_limits<double>::infinity();  // [Pa]
+  Point<D> gravity{};                                             // [m/s2]
+};
+
+// Spans over slots.
+struct PressureStep {
+  double dt = 0;                     // [s]
+  std::span<const double> velocity;  // predicted v* of the nodes, NodeGradient::kStride values a slot [m/s]
+  std::span<const double> mobility;  // of the nodes, dt vol / m [m3 s/kg]; 0: no mass
+  std::span<const double> porosity;  // of the cells [-]
+  std::span<const double> darcy_mobility;  // of the cells, k / gamma_w [m2 / (Pa s)]
+  double rhie_chow = 0.05;                 // chi [-]
+};
+
+// Water leaving the soil through ... [m3/s]
+struct Discharge {
+  double surface = 0;            // its free or submerged surface
+  std::vector<double> boundary;  // each of WaterConditions::boundaries
+  double total() const;
+};
+
+// Rates of change summed over all active cells [m3/s]; their sum is the defect. Interior fluxes cancel.
+struct WaterBalance {
+  double storage = 0;   // compression of the water, n / Kw dp/dt
+  double skeleton = 0;  // volume change of the skeleton, D v
+  double projection =
+      0;  // volume passing surfaces and boundaries with the correction of v* (0 if v is corrected)
+  double outflow = 0;    // Darcy discharge
+  double magnitude = 0;  // sum of the absolute values of the cells' terms, to judge the defect by
+  double defect() const { return storage + skeleton + projection + outflow; }
+};
+
+template <int D>
+class PressureField {
+ public:
+  static constexpr int kStride = NodeGradient<D>::kStride;
+
+  // `cells` must outlive the field.
+  PressureField(const WaterCells<D>& cells, const WaterProperties<D>& water,
+                SolverKind solver = SolverKind::automatic);
+  ~PressureField();
+
+  // After Grid::activate returned true: moves the pressure to the new numbering.
+  void carry();
+  // After WaterCells::update returned true (harmless otherwise): new lists, pressure zero in inactive cells.
+  void refresh();
+  void set_tolerance(double tolerance) { accuracy_.tolerance = tolerance; }
+
+  Reals& pressure() { return p_; }  // [Pa], slots
+  const Reals& pressure() const { return p_; }
+  const Reals& increment() const { return dp_; }  // dp of the last step [Pa], slots
+
+  // Solves the step's equation and adds the increment to the pressure. The caller then corrects its nodal
+  // velocities, v = v* - mobility grad dp with node_gradient(increment(), homogeneous). A closed basin of
+  // incompressible water determines pressure up to a constant only: the increment of the first cell of such a
+  // basin is held at zero.
+  SolveReport solve(const PressureStep& step);
+
+  // Steady Darcy flow through a resting skeleton under the present conditions; sets the pressure. A basin
+  // without any prescribed pressure gets the pressure zero in its first cell.
+  SolveReport steady(std::span<const double> darcy_mobility);
+
+  // Gradient at the nodes, out: slots * kStride; see NodeGradient.
+  void node_gradient(std::span<const double> field, BoundaryValues values, WallNormal walls,
+                     std::span<double> out);
+
+  // Rate of volume change of the skeleton in each active cell, (D v)_c / V [1/s]; zero elsewhere.
+  void cell_divergence(std::span<const double> velocity, std::span<double> out) const;
+
+  // Darcy discharge at the present pressure with the conductivities of the last solution.
+  const Discharge& discharge();
+  // Balance of the last step as solved: v* plus its correction at the faces. Defect: what the solver left.
+  const WaterBalance& balance() const { return balance_; }
+  // Balance of the last step with the corrected nodal velocities. Defect: what the approximate projection
+  // left.
+  WaterBalance balance(std::span<const double> velocity) const;
+
+  const char* solver_name() const;
+  int pinned_basins() const { return pinned_; }  // in the last solution
+
+ private:
+  double divergence(const ActiveCell<D>& cell, std::span<const double> velocity) const;
+  double face_mobility(const FaceNodes<D>& nodes, std::span<const double> mobility) const;
+  double darcy_outflow(const BoundaryFace<D>& face, double darcy_mobility) const;
+  void face_terms(std::span<const double> mobility, std::span<const double> darcy_mobility, double chi);
+  void gather_sinks();
+  void pin_closed_basins();
+  void find_basins();
+  SolveReport solve_increment();
+  void require_current(std::size_t slots) const;
+
+  const WaterCells<D>& cells_;
+  WaterProperties<D> water_;
+  std::unique_ptr<LinearSolver<D>> solver_;
+  Accuracy accuracy_;
+  NodeGradient<D> gradient_;
+  std::uint64_t grid_revision_ = 0;
+  std::uint64_t cells_revision_ = 0;
+
+  Reals p_, dp_;     // slots
+  Reals node_grad_;  // slots * kStride
+  // Faces, interior then boundary; explicit volume flow along the axis (interior) or outwards (boundary)
+  // [m3/s].
+  Reals flow_;
+  Reals conductance_;                        // [m3 / (Pa s)]
+  Reals boundary_inertia_, boundary_darcy_;  // parts of the boundary faces: Lam A/d [m3/(Pa s)], kappa
+  // Active cells.
+  Reals storage_;  // (n / Kw) V / dt [m3 / (Pa s)]
+  Reals sink_, rhs_, x_;
+  std::vector<double> divergence_;  // (D v*)_c [m3/s]
+  std::vector<int> basin_;          // connected set of cells each active cell belongs to
+  std::vector<int> basin_first_;    // first cell of each basin
+  std::vector<double> basin_sink_, basin_scale_;
+  int pinned_ = 0;
+  Discharge discharge_;
+  WaterBalance balance_;
+};
+
+extern template class PressureField<2>;
+extern template class PressureField<3>;
+
+}  // namespace polder::fdm

@@ -1,0 +1,107 @@
+// A grid with all blocks stored, its water cells and pressure, filled from functions of position: for the
+// tests of fdm.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "fdm/pressure_field.hpp"
+
+namespace polder::fdm::test {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+template <int D>
+struct Scene {
+  using At = std::function<double(const Point<D>&)>;
+
+  Grid<D> grid;
+  WaterCells<D> cells;
+  WaterConditions<D> conditions;
+  std::vector<double> fill, porosity, darcy_mobility, mobility, velocity;
+
+  Scene(Point<D> origin, Index<D> size, double h, Space space = D == 3 ? Space::three_d : Space::plane_strain)
+      : grid(origin, size, h), cells(grid, space) {
+    std::vector<int> all(grid.block_numbers());
+    for (int b = 0; b < grid.block_numbers(); ++b) all[b] = b;
+    grid.activate(all);
+    fill.assign(grid.slots(), 0);
+    porosity.assign(grid.slots(), 0.4);
+    darcy_mobility.assign(grid.slots(), 0);
+    mobility.assign(grid.slots(), 0);
+    velocity.assign(grid.slots() * 4, 0);
+  }
+
+  Point<D> centre(int slot) const { return cells.centre(grid.index(slot)); }
+
+  // Soil up to the height `top` along the last axis.
+  void fill_below(double top) {
+    fill_cells([&](const Point<D>& x) {
+      return std::min(1.0, std::max(0.0, (top - x[D - 1]) / grid.spacing() + 0.5));
+    });
+  }
+  void fill_cells(const At& f) {
+    for (int s = 0; s < grid.slots(); ++s) fill[s] = grid.is_cell(grid.index(s)) ? f(centre(s)) : 0;
+  }
+  void cells_to(std::vector<double>& field, const At& f) {
+    for (int s = 0; s < grid.slots(); ++s) field[s] = f(centre(s));
+  }
+  void nodes_to(std::vector<double>& field, const At& f) {
+    for (int s = 0; s < grid.slots(); ++s) field[s] = f(grid.position(grid.index(s)));
+  }
+  void velocity_to(const std::function<Point<D>(const Point<D>&)>& f) {
+    for (int s = 0; s < grid.slots(); ++s) {
+      const Point<D> v = f(grid.position(grid.index(s)));
+      for (int d = 0; d < D; ++d) velocity[s * 4 + d] = v[d];
+    }
+  }
+  PressureStep step(double dt, double chi = 0.05) const {
+    return {dt, velocity, mobility, porosity, darcy_mobility, chi};
+  }
+};
+
+inline WaterProperties<2> water2(double bulk_modulus = kInfinity, double g = -9.81) {
+  return {.density = 1000, .bulk_modulus = bulk_modulus, .gravity = {0, g}};
+}
+inline WaterProperties<3> water3(double bulk_modulus = kInfinity, double g = -9.81) {
+  return {.density = 1000, .bulk_modulus = bulk_modulus, .gravity = {0, 0, g}};
+}
+template <int D>
+WaterProperties<D> water(double bulk_modulus = kInfinity, double g = -9.81) {
+  if constexpr (D == 2)
+    return water2(bulk_modulus, g);
+  else
+    return water3(bulk_modulus, g);
+}
+
+template <int D>
+WaterBoundary<D> boundary(typename WaterBoundary<D>::Kind kind, int side, double value) {
+  WaterBoundary<D> b;
+  b.name = "side " + std::to_string(side);
+  b.kind = kind;
+  b.side = side;
+  b.value = value;
+  return b;
+}
+
+// Reproducible numbers in [0, 1).
+class Random {
+ public:
+  double operator()() {
+    state_ = state_ * 6364136223846793005ull + 1442695040888963407ull;
+    return static_cast<double>(state_ >> 11) * 0x1p-53;
+  }
+
+ private:
+  unsigned long long state_ = 12345;
+};
+
+// A trapezoidal levee on its foundation: 2 : 1 slopes, crest of a tenth of the width.
+inline bool in_levee(double x, double y) {  // both in units of the width, 0.45 high
+  if (y < 0.15) return true;
+  return y < 0.45 && std::abs(x - 0.5) < 0.05 + 0.75 * (0.45 - y);
+}
+
+}  // namespace polder::fdm::test
