@@ -40,7 +40,7 @@ double dot(std::span<const double> a, std::span<const double> b) {
 // Measured with a levee-shaped mask, new values in every solution (bench/pressure_solvers).
 template <>
 int direct_limit<2>() {
-  return 2500;
+  return 1500;
 }
 template <>
 int direct_limit<3>() {

@@ -10,8 +10,11 @@
 // level is solved directly. The outer iteration is flexible (Polak-Ribiere) because a K-cycle is not a fixed
 // linear map.
 //
-// Arrays cover the box padded by one cell on each side; rows along x are visited from their first to their
-// last active cell only. All sums have a fixed shape, so the bits do not depend on the number of threads.
+// Cells are stored in rows along x, each from its first to its last active cell with one cell of padding at
+// either end; the neighbour across another axis is at a distance that is constant along a row. Where a
+// neighbour is missing the link is zero and the position read instead is harmless. Values at inactive
+// positions stay finite and never count: diagonal, links and right-hand side are zero there. All sums have a
+// fixed shape, so the bits do not depend on the number of threads.
 #pragma once
 
 #include <array>
@@ -32,28 +35,36 @@ class Multigrid final : public LinearSolver<D> {
   int levels() const { return static_cast<int>(levels_.size()); }
 
  private:
+  static constexpr double kDamping = 0.75;  // of the Jacobi smoother
+
+  // A run of cells along x, from the first to the last active cell of a grid line; between them may be
+  // inactive ones.
   struct Row {
-    int begin, end;  // positions of the first active cell and one past the last
-    int origin;      // position of the row's cell with x index 0
+    int begin, end;               // positions in the level's arrays
+    int x;                        // index along x of the first cell
+    Index<D> line;                // indices along the other axes (line[0] unused)
+    std::array<int, D> up, down;  // distance in the arrays to the cell above and below along each axis
   };
   struct Level {
-    Index<D> size{};              // cells of the box
-    std::array<int, D> stride{};  // in the padded arrays
-    int cells = 0;                // active
-    std::vector<unsigned char> active;
+    Index<D> size{};  // cells of the box
+    int cells = 0;    // active
     std::vector<Row> rows;
-    std::vector<int> children;     // rows of the finer level, grouped by the rows of this one
-    std::vector<int> first_child;  // of each row in `children`, and the end
-    std::array<int, D> shift{};    // 2^shift cells of this level make one of the next, along each axis
-    std::array<Reals, D> link;     // to the neighbour on the upper side
+    std::vector<unsigned char> active;
+    std::vector<int> row_at;         // row of each grid line of the box, -1 if it is empty
+    std::vector<int> children;       // rows of the finer level, grouped by the rows of this one
+    std::vector<int> first_child;    // of each row in `children`, and the end
+    std::array<int, D> shift{};      // 2^shift cells of this level make one of the next, along each axis
+    std::array<Reals, D> link;       // to the neighbour above
+    std::array<Reals, D> link_down;  // to the neighbour below (along x: link of the position before)
     Reals sink, diagonal;
-    Reals weight;              // damping / diagonal, 0 where inactive
-    Reals rhs, x, p, z, q, v;  // work
-    int position(const Index<D>& index) const;
+    Reals weight;                        // damping / diagonal, 0 where inactive
+    Reals rhs, x, p, z, q, v, smoothed;  // work
+    int line_number(const Index<D>& line) const;
+    int position(const Index<D>& index) const;  // -1 if outside the rows
   };
 
-  static Level make_level(const Index<D>& size);
-  static void finish_shape(Level& level);
+  // From the active cells, any order.
+  static Level make_level(const Index<D>& size, const std::vector<Index<D>>& cells);
   static void finish_values(Level& level);
   static std::array<int, D> aggregate_shape(const Level& level);
   static Level make_coarse(const Level& fine);
@@ -63,7 +74,7 @@ class Multigrid final : public LinearSolver<D> {
 
   static void apply(const Level& a, const Reals& x, Reals& y);
   static void residual(const Level& a, const Reals& b, const Reals& x, Reals& r);
-  static void smooth(const Level& a, const Reals& r, Reals& x);  // x += weight r
+  static void smooth(const Level& a, const Reals& b, const Reals& x, Reals& y);  // y = x + weight (b - A x)
   static void restrict_to(const Level& fine, const Reals& r, Level& coarse);
   static void prolong_add(const Level& coarse, const Level& fine, Reals& x);
   void cycle(int l, const Reals& b, Reals& x);

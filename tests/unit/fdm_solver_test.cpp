@@ -101,7 +101,7 @@ TEST_CASE("multigrid agrees with Cholesky in 3D") {
   }
 }
 
-TEST_CASE("stiff layers are aggregated along the stiff axis") {
+TEST_CASE("stiff layers are aggregated along the stiff axis only") {
   for (double anisotropy : {0.01, 100.0}) {
     CAPTURE(anisotropy);
     compare(irregular<2>({90, 40}, 10, anisotropy,
