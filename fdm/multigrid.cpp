@@ -7,11 +7,12 @@
 
 #include "core/error.hpp"
 #include "core/threads.hpp"
-#include "fdm/loops.hpp"
 
 namespace polder::fdm {
 namespace {
 
+constexpr int kParallelCells =
+    32768;  // a sweep over fewer cells is over before the other threads have started
 constexpr int kMaxIterations = 200;
 constexpr double kEnough =
     1.0 / 16;  // squared gain of the first coarse step that makes the second one superfluous
@@ -19,7 +20,7 @@ constexpr double kEnough =
 // Rows of a level: on several threads once the level is large.
 template <class F>
 void for_rows(int cells, int rows, const F& f) {
-  if (cells < kParallelFrom)
+  if (cells < kParallelCells)
     for (int r = 0; r < rows; ++r) f(r);
   else
     parallel_for(rows, f);

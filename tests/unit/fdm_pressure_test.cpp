@@ -68,16 +68,18 @@ void random_levee(Scene<2>& s, int nx) {
 }  // namespace
 
 TEST_CASE("manufactured pressure converges with second order in 2D, axisymmetry and 3D") {
-  const auto order = [](auto error, int n) { return std::log2(error(n) / error(2 * n)); };
-  const auto plane = [](int n) { return manufactured<2>(n, Space::plane_strain, SolverKind::direct); };
-  const auto axial = [](int n) { return manufactured<2>(n, Space::axisymmetric, SolverKind::multigrid); };
-  const auto solid = [](int n) { return manufactured<3>(n, Space::three_d, SolverKind::automatic); };
-  MESSAGE("errors 2D " << plane(32) << " " << plane(64) << " axisymmetric " << axial(32) << " " << axial(64)
-                       << " 3D " << solid(12) << " " << solid(24));
-  CHECK(order(plane, 32) > 1.85);
-  CHECK(order(axial, 32) > 1.85);
-  CHECK(order(solid, 12) > 1.8);
-  CHECK(plane(64) < 1e-3);
+  const auto check = [](const char* space, double coarse, double fine, double least_order) {
+    const double order = std::log2(coarse / fine);
+    MESSAGE(space << ": largest errors " << coarse << ", " << fine << ", order " << order);
+    CHECK(order > least_order);
+    CHECK(fine < 4e-3);
+  };
+  check("plane strain", manufactured<2>(32, Space::plane_strain, SolverKind::direct),
+        manufactured<2>(64, Space::plane_strain, SolverKind::direct), 1.9);
+  check("axisymmetric", manufactured<2>(32, Space::axisymmetric, SolverKind::multigrid),
+        manufactured<2>(64, Space::axisymmetric, SolverKind::multigrid), 1.9);
+  check("3D", manufactured<3>(10, Space::three_d, SolverKind::automatic),
+        manufactured<3>(20, Space::three_d, SolverKind::automatic), 1.9);
 }
 
 TEST_CASE("hydrostatic pressure stays as it is with the surface at 8 places in a cell") {
@@ -230,18 +232,19 @@ TEST_CASE("both solvers give the same increment") {
 }
 
 TEST_CASE("same bits with 1, 2 and 4 threads") {
-  const int nx = 200;
   for (SolverKind kind : {SolverKind::direct, SolverKind::multigrid}) {
+    const bool direct = kind == SolverKind::direct;
+    const int nx = direct ? 200 : 380;
     Reals first_p, first_g;
     for (int n : {1, 2, 4}) {
       set_threads(n);
       Scene<2> s({0, 0}, {nx, nx / 2}, 1.0);
       random_levee(s, nx);
       s.cells.update(s.fill, s.conditions);
-      REQUIRE(s.cells.count() > 8192);  // long enough for parallel loops
+      REQUIRE(s.cells.count() > (direct ? 8192 : 32768));  // long enough for parallel loops
       PressureField<2> field(s.cells, water2(2.2e9), kind);
       field.refresh();
-      for (int step = 0; step < 2; ++step) field.solve(s.step(1e-3));
+      field.solve(s.step(1e-3));
       Reals g(s.grid.slots() * 4);
       field.node_gradient(field.pressure(), BoundaryValues::present, WallNormal::inward, g);
       if (n == 1) first_p = field.pressure(), first_g = g;
