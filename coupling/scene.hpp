@@ -88,7 +88,8 @@ struct WaterSpec {
 // Where water may enter or leave through the sides of the grid; everywhere else the sides are impermeable.
 struct WaterBoundary {
   std::string name;
-  enum class Kind { head, pressure, impermeable } kind = Kind::head;
+  // surface: the soil ends there as at its free surface (pressure of open water, else zero)
+  enum class Kind { head, pressure, impermeable, surface } kind = Kind::head;
   int side = 0;                       // 2 * axis + (0 lower, 1 upper)
   std::optional<Vector3> from, to;    // part of the side, whole side if absent
   TimeTable value;                    // head: water level [m]; pressure: [Pa]

@@ -173,8 +173,11 @@ template <int D> MoveResult Skeleton<D>::gather(double time, double dt) {
   o.dt = dt;
   o.affine = options_.affine;
   o.flip = options_.flip;
-  const Reals* rate = cell_rate_set_ ? &cell_rate_ : nullptr;
   MoveResult r;
+  const auto rate = [&](const Reals& v) -> const Reals* {
+    if (options_.cell_average && !cell_rate_set_) project_volumetric(v);
+    return cell_rate_set_ ? &cell_rate_ : nullptr;
+  };
   if (options_.musl) {
     update_velocities(transfer_, options_.flip, v_old_, v_new_, &v_map_);
     parallel_for(grid_.blocks(), [&](int block) {
@@ -184,10 +187,10 @@ template <int D> MoveResult Skeleton<D>::gather(double time, double dt) {
       }
     });
     boundaries_.apply(time + dt, dt, sums_, v_map_, false, false);
-    r = update_stress_and_move(transfer_, o, nullptr, v_new_, v_map_, rate);
+    r = update_stress_and_move(transfer_, o, nullptr, v_new_, v_map_, rate(v_map_));
   } else {
     o.update_velocity = options_.affine == AffineKind::none;
-    r = update_stress_and_move(transfer_, o, &v_old_, v_new_, v_new_, rate);
+    r = update_stress_and_move(transfer_, o, &v_old_, v_new_, v_new_, rate(v_new_));
   }
   if constexpr (D == 2)
     for (SurfaceLoad& load : loads_) load.move(grid_, options_.shape, dt, v_new_);

@@ -59,6 +59,8 @@ template <int D> class Skeleton {
   // Re-sort if needed, or now if `force`. Returns true when slots were renumbered (Grid::carry moves other fields).
   bool sort(bool force = false);
   void scatter(double time);
+  // Soil in cells by the overlap of particle domains, see mpm::scatter_cells [slots * 4].
+  void scatter_cells(Reals& cells) { mpm::scatter_cells(transfer_, cells); }
 
   // acceleration [slots * 4]: added to f / m + g, or null. damping: local damping alpha (Cundall 1987), componentwise.
   void predict(double dt, const Point<D>& gravity, double damping, const Reals* acceleration);
@@ -67,7 +69,8 @@ template <int D> class Skeleton {
   void constrain(double time, double dt, const Reals* correction, Reals& v, bool record);
 
   // Volumetric strain rate (D v)_c / V_c of cells whose corners all carry material into cell_rate(), NaN elsewhere, from
-  // the nodal velocities v; used by the next gather().
+  // the nodal velocities v; used by the next gather(), which otherwise does this itself with the velocities that its
+  // strains come from. Only where cell_average is chosen.
   void project_volumetric(const Reals& v);
 
   // Particles from v_new. Returns what the step moved; throws NumericalError naming the point when a value is not finite.
@@ -76,11 +79,10 @@ template <int D> class Skeleton {
   // Nodal fields.
   const Reals& sums() const { return sums_; }
   Reals& sums() { return sums_; }
-  Reals& v_old() { return v_old_; }
+  const Reals& v_old() const { return v_old_; }
   Reals& v_new() { return v_new_; }
   const Reals& v_new() const { return v_new_; }
   double mass_floor() const { return mass_floor_; }  // nodes lighter than this move with their neighbours' momentum only
-  bool needs_cell_rate() const { return options_.cell_average; }
 
   // Out-of-balance force of the last predict(): norm over free components of m a before damping, and of the total load
   // (gravity and surface loads) [N].

@@ -6,7 +6,8 @@
 // do not depend on the number of threads.
 //
 // Node sums are eight numbers a node: 2D {m, px, py, fx, fy, V, -, -}, 3D {m, px, py, pz, fx, fy, fz, V}: mass, momentum,
-// force of stress and loads, particle volume. Velocities are four numbers a node (padded).
+// force of stress and loads, volume of saturated soil (0 in dry
+// scenes). Velocities are four numbers a node (padded).
 #pragma once
 
 #include <memory>

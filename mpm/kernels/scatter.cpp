@@ -47,7 +47,7 @@ POLDER_INLINE void load_fields(const mpm::Transfer<D>& transfer, const ParticleS
     const Pack radius = load(&set.position[0][p]);
     f[kForce] -= volume * sigma[2] / radius;
   }
-  f[mpm::Transfer<D>::kVolume] = volume;
+  f[mpm::Transfer<D>::kVolume] = set.wet.empty() ? Pack{} : volume * load(&set.wet[p]);
   to_nodes<8>(f, out.value);
 
   constexpr int xy = 3, yz = D == 3 ? 4 : 0, zx = D == 3 ? 5 : 0;

@@ -1,0 +1,91 @@
+#include "coupling/body_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace polder::coupling {
+
+BodyShape::BodyShape(const Body& body, int dimension) : body_(body), up_(dimension - 1) {
+  if (body.box) {
+    lower_ = (*body.box)[0], upper_ = (*body.box)[1];
+  } else if (body.centre) {
+    for (int d = 0; d < dimension; ++d)
+      lower_[d] = (*body.centre)[d] - body.radius, upper_[d] = (*body.centre)[d] + body.radius;
+  } else {
+    lower_ = upper_ = body.polygon.front();
+    for (const Vector3& x : body.polygon)
+      for (int d = 0; d < 2; ++d) lower_[d] = std::min(lower_[d], x[d]), upper_[d] = std::max(upper_[d], x[d]);
+  }
+}
+
+bool BodyShape::inside(const Vector3& x) const {
+  if (body_.box) {
+    for (int d = 0; d <= up_; ++d)
+      if (x[d] < lower_[d] || x[d] > upper_[d]) return false;
+    return true;
+  }
+  if (body_.centre) {
+    double r = 0;
+    for (int d = 0; d <= up_; ++d) r += (x[d] - (*body_.centre)[d]) * (x[d] - (*body_.centre)[d]);
+    return r <= body_.radius * body_.radius;
+  }
+  bool in = false;  // crossings of a horizontal ray
+  const auto& p = body_.polygon;
+  for (std::size_t i = 0, j = p.size() - 1; i < p.size(); j = i++)
+    if ((p[i][1] > x[1]) != (p[j][1] > x[1]) &&
+        x[0] < p[j][0] + (x[1] - p[j][1]) * (p[i][0] - p[j][0]) / (p[i][1] - p[j][1]))
+      in = !in;
+  return in;
+}
+
+Vector3 BodyShape::centroid() const {
+  if (body_.centre) return *body_.centre;
+  if (body_.box) {
+    Vector3 c{};
+    for (int d = 0; d < 3; ++d) c[d] = 0.5 * (lower_[d] + upper_[d]);
+    return c;
+  }
+  double area = 0, cx = 0, cy = 0;
+  const auto& p = body_.polygon;
+  for (std::size_t i = 0, j = p.size() - 1; i < p.size(); j = i++) {
+    const double cross = p[j][0] * p[i][1] - p[i][0] * p[j][1];
+    area += cross, cx += cross * (p[j][0] + p[i][0]), cy += cross * (p[j][1] + p[i][1]);
+  }
+  return {cx / (3 * area), cy / (3 * area), 0};
+}
+
+std::vector<std::pair<double, double>> BodyShape::vertical_intervals(const Vector3& x) const {
+  if (body_.box) {
+    for (int d = 0; d < up_; ++d)
+      if (x[d] < lower_[d] || x[d] > upper_[d]) return {};
+    return {{lower_[up_], upper_[up_]}};
+  }
+  if (body_.centre) {
+    double r = body_.radius * body_.radius;
+    for (int d = 0; d < up_; ++d) r -= (x[d] - (*body_.centre)[d]) * (x[d] - (*body_.centre)[d]);
+    if (r <= 0) return {};
+    const double c = (*body_.centre)[up_], half = std::sqrt(r);
+    return {{c - half, c + half}};
+  }
+  std::vector<double> cuts;
+  const auto& p = body_.polygon;
+  for (std::size_t i = 0, j = p.size() - 1; i < p.size(); j = i++)
+    if ((p[i][0] > x[0]) != (p[j][0] > x[0]))
+      cuts.push_back(p[j][1] + (x[0] - p[j][0]) * (p[i][1] - p[j][1]) / (p[i][0] - p[j][0]));
+  std::sort(cuts.begin(), cuts.end());
+  std::vector<std::pair<double, double>> all;
+  for (std::size_t i = 0; i + 1 < cuts.size(); i += 2) all.emplace_back(cuts[i], cuts[i + 1]);
+  return all;
+}
+
+double height_at(const std::vector<Vector3>& line, double x) {
+  if (x <= line.front()[0]) return line.front()[1];
+  for (std::size_t i = 1; i < line.size(); ++i)
+    if (x <= line[i][0]) {
+      const double s = (x - line[i - 1][0]) / (line[i][0] - line[i - 1][0]);
+      return line[i - 1][1] + s * (line[i][1] - line[i - 1][1]);
+    }
+  return line.back()[1];
+}
+
+}  // namespace polder::coupling

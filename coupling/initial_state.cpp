@@ -1,0 +1,176 @@
+#include "coupling/initial_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "core/threads.hpp"
+#include "coupling/body_shape.hpp"
+
+namespace polder::coupling {
+namespace {
+
+template <int D> Vector3 at(const ParticleSet<D>& set, int p) {
+  Vector3 v{};
+  for (int d = 0; d < D; ++d) v[d] = set.position[d][p];
+  return v;
+}
+
+// Height of the water table over x where the scene draws one.
+double water_table(const WaterSpec& water, const Vector3& x) { return height_at(water.phreatic, x[0]); }
+
+// Total vertical stress at x, compression positive, from the weight above.
+double overburden(const Scene& scene, const std::vector<BodyShape>& shapes, const Vector3& x, int up, bool wet) {
+  double g = 0;
+  for (int d = 0; d < 3; ++d) g += scene.gravity[d] * scene.gravity[d];
+  g = std::sqrt(g);
+  double stress = 0;
+  for (std::size_t b = 0; b < shapes.size(); ++b) {
+    const mpm::MaterialParameters& m = scene.materials[scene.bodies[b].material];
+    for (auto [low, high] : shapes[b].vertical_intervals(x)) {
+      low = std::max(low, x[up]);
+      if (high <= low) continue;
+      const double dry = m.dry_density(), pores = m.porosity * scene.water.density;
+      double density = dry * (high - low);
+      if (wet && m.porosity > 0) {
+        const double table =
+            scene.water.phreatic.empty() ? high : std::clamp(water_table(scene.water, x), low, high);
+        density += pores * ((table - low) + scene.water.saturation_above * (high - table));
+      }
+      stress += density * g;
+    }
+  }
+  return stress;
+}
+
+// Top of the saturated soil above x: where a hydrostatic pore pressure is zero.
+double pressure_datum(const Scene& scene, const std::vector<BodyShape>& shapes, const Vector3& x, int up) {
+  double top = -1e300;
+  for (std::size_t b = 0; b < shapes.size(); ++b)
+    if (scene.materials[scene.bodies[b].material].porosity > 0)
+      for (const auto& [low, high] : shapes[b].vertical_intervals(x)) top = std::max(top, high);
+  if (!scene.water.phreatic.empty()) top = std::min(top, water_table(scene.water, x));
+  if (scene.water.outside_level) top = std::max(top, scene.water.outside_level->at(0));
+  (void)up;
+  return top;
+}
+
+double k0_at(const InitialStress& s, double depth) {
+  std::size_t layer = 0;
+  while (layer < s.layer_depth.size() && layer + 1 < s.k0.size() && depth > s.layer_depth[layer]) ++layer;
+  return s.k0[layer];
+}
+
+std::vector<BodyShape> shapes_of(const Scene& scene) {
+  std::vector<BodyShape> shapes;
+  for (const Body& b : scene.bodies) shapes.emplace_back(b, scene.dimension());
+  return shapes;
+}
+
+}  // namespace
+
+template <int D> void set_saturation(World<D>& world) {
+  const WaterSpec& water = world.scene.water;
+  for (auto& body : world.skeleton.bodies()) {
+    ParticleSet<D>& set = *body;
+    const mpm::MaterialParameters& m = world.scene.materials[set.material];
+    if (m.porosity <= 0) continue;
+    const int capillary = world.layouts[set.material].capillary_factor;
+    const int n = set.slots();
+    set.pore_water.assign(n, water.density);
+    set.wet.assign(n, 1.0);
+    set.conductivity.assign(n, m.hydraulic_conductivity);
+    if (capillary >= 0) std::fill(set.state[capillary].begin(), set.state[capillary].end(), 0.0);
+    if (water.phreatic.empty()) continue;
+    if (water.suction_above != 0) set.suction_stress.assign(n, 0.0);
+    for (int p = 0; p < n; ++p) {
+      if (set.position[D - 1][p] <= water_table(water, at(set, p))) continue;
+      set.wet[p] = 0;
+      set.pore_water[p] = water.saturation_above * water.density;
+      if (!set.suction_stress.empty()) set.suction_stress[p] = water.saturation_above * water.suction_above;
+      if (capillary >= 0) set.state[capillary][p] = 1;
+    }
+  }
+}
+
+template <int D> void set_initial_stress(World<D>& world) {
+  const Scene& scene = world.scene;
+  const std::vector<BodyShape> shapes = shapes_of(scene);
+  const bool wet = world.pore_water != nullptr;
+  constexpr int kUp = D - 1, kVertical = D == 2 ? 1 : 2;  // component of the vertical stress
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const InitialStress& initial = scene.bodies[b].stress;
+    ParticleSet<D>& set = *world.skeleton.bodies()[b];
+    for (int p = 0; p < set.slots(); ++p) {
+      const Vector3 x = at(set, p);
+      if (initial.kind == InitialStress::Kind::field) {
+        for (int k = 0; k < ParticleSet<D>::kStress; ++k)
+          set.stress[k][p] = initial.value[k] + initial.gradient[k] * (x[kUp] - initial.datum);
+      } else if (initial.kind == InitialStress::Kind::k0) {
+        const bool full = wet && !set.wet.empty() && set.wet[p] > 0;
+        double pressure = 0;
+        if (full)
+          pressure = std::max(0.0, world.unit_weight() * (pressure_datum(scene, shapes, x, kUp) - x[kUp]));
+        double total = overburden(scene, shapes, x, kUp, wet);
+        if (full && scene.water.outside_level)  // open water standing on the surface
+          total += world.unit_weight() * std::max(0.0, scene.water.outside_level->at(0) - shapes[b].vertical_intervals(x).back().second);
+        const double vertical = std::max(0.0, total - pressure);
+        const double horizontal = k0_at(initial, shapes[b].upper()[kUp] - x[kUp]) * vertical;
+        const double suction = set.suction_stress.empty() ? 0.0 : set.suction_stress[p];
+        for (int k = 0; k < 3; ++k) set.stress[k][p] = -(k == kVertical ? vertical : horizontal) - suction;
+      } else if (!set.suction_stress.empty()) {
+        for (int k = 0; k < 3; ++k) set.stress[k][p] = -set.suction_stress[p];
+      }
+    }
+  }
+}
+
+template <int D> void set_initial_pressure(World<D>& world) {
+  PoreWater<D>& water = *world.pore_water;
+  const Scene& scene = world.scene;
+  Reals& p = water.pressure.pressure();
+  switch (scene.water.initial) {
+    case WaterSpec::Initial::zero: std::fill(p.begin(), p.end(), 0.0); break;
+    case WaterSpec::Initial::steady: water.pressure.steady(water.darcy_mobility); break;
+    case WaterSpec::Initial::hydrostatic: {
+      const std::vector<BodyShape> shapes = shapes_of(scene);
+      for (const fdm::ActiveCell<D>& cell : water.cells.cells()) {
+        Vector3 x{};
+        const Point<D> c = water.cells.centre(cell.index);
+        for (int d = 0; d < D; ++d) x[d] = c[d];
+        p[cell.slot] = std::max(0.0, world.unit_weight() * (pressure_datum(scene, shapes, x, D - 1) - x[D - 1]));
+      }
+      break;
+    }
+  }
+}
+
+template <int D> void wet_points(World<D>& world) {
+  const Grid<D>& grid = world.skeleton.grid();
+  for (auto& body : world.skeleton.bodies()) {
+    ParticleSet<D>& set = *body;
+    if (set.suction_stress.empty()) continue;
+    const int capillary = world.layouts[set.material].capillary_factor;
+    parallel_for(set.slots(), [&](int p) {
+      if (set.id[p] < 0 || set.wet[p] > 0 || (set.suction_stress[p] == 0 && (capillary < 0 || set.state[capillary][p] == 0)))
+        return;
+      Index<D> cell;
+      for (int d = 0; d < D; ++d)
+        cell[d] = std::clamp(static_cast<int>((set.position[d][p] - grid.origin()[d]) / grid.spacing()), 0, grid.cells()[d] - 1);
+      const int slot = grid.slot(cell);
+      if (slot < 0 || !world.pore_water->cells.active(slot)) return;
+      set.suction_stress[p] = 0;
+      if (capillary >= 0) set.state[capillary][p] = 0;
+    });
+  }
+}
+
+#define POLDER_INSTANTIATE(D)                       \
+  template void set_saturation<D>(World<D>&);       \
+  template void set_initial_stress<D>(World<D>&);   \
+  template void set_initial_pressure<D>(World<D>&); \
+  template void wet_points<D>(World<D>&);
+POLDER_INSTANTIATE(2)
+POLDER_INSTANTIATE(3)
+
+}  // namespace polder::coupling

@@ -1,0 +1,271 @@
+// What observers ask of a running simulation: history, probes, frames.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/error.hpp"
+#include "coupling/simulation_run.hpp"
+#include "mpm/point_stencil.hpp"
+
+namespace polder::coupling {
+namespace {
+
+const char* const kAxis[] = {"x", "y", "z"};
+
+int axis_of(const std::string& quantity) {
+  const char c = quantity.back();
+  return c >= 'x' && c <= 'z' && quantity[quantity.size() - 2] == '_' ? c - 'x' : -1;
+}
+
+}  // namespace
+
+template <int D> long Simulation::Run<D>::particles() const {
+  long n = 0;
+  for (const auto& body : world->skeleton.bodies()) n += body->count();
+  return n;
+}
+
+template <int D> std::vector<Column> Simulation::Run<D>::history() const {
+  const Totals t = audit->totals(*world);
+  const Work& w = audit->work();
+  const mpm::Skeleton<D>& skeleton = world->skeleton;
+  std::vector<Column> c;
+  const auto add = [&](const std::string& name, double value) { c.push_back({name, value}); };
+  add("time[s]", time);
+  add("step", static_cast<double>(steps));
+  add("stage", stage);
+  add("dt[s]", dt);
+  add("kinetic_energy[J]", t.kinetic_energy);
+  add("elastic_energy[J]", t.elastic_energy);
+  add("work_gravity[J]", w.gravity);
+  add("work_stress[J]", w.stress);
+  add("work_water[J]", w.water);
+  add("work_damping[J]", w.damping);
+  add("work_boundary[J]", w.boundary);
+  add("transfer_loss[J]", audit->energy_loss(t));
+  add("unbalanced_force_ratio[-]", skeleton.load_norm() > 0 ? skeleton.unbalanced_force() / skeleton.load_norm() : 0.0);
+  for (int d = 0; d < D; ++d) add(std::string("momentum_") + kAxis[d] + "[kg m/s]", t.momentum[d]);
+  add("momentum_error[-]", audit->impulse_error(t));
+  add("solid_mass_error[-]", (t.solid_mass - initial_solid_mass) / initial_solid_mass);
+  add("max_speed[m/s]", t.largest_speed);
+  add("runout[m]", t.runout);
+  add("height[m]", t.height);
+  for (std::size_t b = 0; b < skeleton.boundaries().specs().size(); ++b) {
+    const auto& spec = skeleton.boundaries().specs()[b];
+    if (spec.name.rfind("side-", 0) == 0) continue;  // unnamed sides
+    for (int d = 0; d < D; ++d)
+      add("reaction:" + spec.name + "_" + kAxis[d] + "[N]", skeleton.boundaries().reaction(static_cast<int>(b))[d]);
+  }
+  if (world->pore_water) {
+    PoreWater<D>& water = *world->pore_water;
+    const double change = t.water_volume - initial_water_volume + water.outflow + water.storage;
+    add("water_mass_error[-]", initial_water_volume > 0 ? change / initial_water_volume : 0.0);
+    add("water_outflow[m3]", water.outflow);
+    double largest = 0;
+    for (const auto& cell : water.cells.cells()) largest = std::max(largest, water.pressure.pressure()[cell.slot]);
+    add("max_pore_pressure[Pa]", largest);
+    add("pressure_roughness[Pa]", pressure_roughness(water));
+    const fdm::Discharge& q = water.pressure.discharge();
+    add("discharge:surface[m3/s]", q.surface);
+    for (std::size_t b = 0; b < scene.water_boundaries.size(); ++b)
+      add("discharge:" + scene.water_boundaries[b].name + "[m3/s]", b < q.boundary.size() ? q.boundary[b] : 0.0);
+    add("pressure_cells", static_cast<double>(water.cells.count()));
+  }
+  return c;
+}
+
+template <int D> int Simulation::Run<D>::probe_particle(const Vector3& at) const {
+  int number = 0, best = -1;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const auto& body : world->skeleton.bodies()) {
+    for (int id = 0; id < body->count(); ++id, ++number) {
+      const int p = body->find(id);
+      double r = 0;
+      for (int d = 0; d < D; ++d) r += (body->initial_position[d][p] - at[d]) * (body->initial_position[d][p] - at[d]);
+      if (r < nearest) nearest = r, best = number;
+    }
+  }
+  return best;
+}
+
+template <int D> std::pair<const ParticleSet<D>*, int> Simulation::Run<D>::locate(int number) const {
+  for (const auto& body : world->skeleton.bodies()) {
+    if (number < body->count()) return {body.get(), body->find(number)};
+    number -= body->count();
+  }
+  throw std::out_of_range("particle number");
+}
+
+// `quantity` without its component suffix; component -1 asks for a scalar (or the magnitude of a vector).
+template <int D>
+double Simulation::Run<D>::quantity_of(const ParticleSet<D>& set, int p, const std::string& q, int component) const {
+  const auto vector = [&](auto&& value) {
+    if (component >= 0) return component < D ? value(component) : 0.0;
+    double s = 0;
+    for (int d = 0; d < D; ++d) s += value(d) * value(d);
+    return std::sqrt(s);
+  };
+  const auto stress = [&](int k) { return k < ParticleSet<D>::kStress ? set.stress[k][p] : 0.0; };
+  const double mean = (stress(0) + stress(1) + stress(2)) / 3;
+  if (q == "displacement") return vector([&](int d) { return set.position[d][p] - set.initial_position[d][p]; });
+  if (q == "position") return vector([&](int d) { return set.position[d][p]; });
+  if (q == "velocity") return vector([&](int d) { return set.velocity[d][p]; });
+  if (q == "effective_stress") return stress(component);
+  if (q == "mean_effective_stress") return -mean;
+  if (q == "deviatoric_stress") {
+    double j2 = 0;
+    for (int k = 0; k < 3; ++k) j2 += 0.5 * (stress(k) - mean) * (stress(k) - mean);
+    for (int k = 3; k < ParticleSet<D>::kStress; ++k) j2 += stress(k) * stress(k);
+    return std::sqrt(3 * j2);
+  }
+  if (q == "deviatoric_strain") {
+    const int k = world->layouts[set.material].plastic_strain;
+    return k >= 0 ? set.state[k][p] : 0.0;
+  }
+  if (q == "pore_pressure") {
+    if (!world->pore_water || set.wet.empty()) return 0.0;
+    if (set.wet[p] == 0) return !set.suction_stress.empty() && set.suction_stress[p] > 0 ? -scene.water.suction_above : 0.0;
+    // Cell value plus the gradient's share, from the four (eight) cells around the point that hold water.
+    Vector3 x{};
+    for (int d = 0; d < D; ++d) x[d] = set.position[d][p];
+    return cell_quantity(x, "pore_pressure_interpolated");
+  }
+  if (q == "porosity") return 1 - set.mass[p] / (set.density_solid * set.volume[p]);
+  if (q == "saturation") return set.pore_water.empty() ? 0.0 : set.pore_water[p] / scene.water.density;
+  if (q == "volume") return set.volume[p];
+  if (q == "material") return set.material;
+  if (q == "id") return set.id[p];
+  throw InputError("quantity '" + q + "' is unknown");
+}
+
+template <int D> double Simulation::Run<D>::particle_quantity(int number, const std::string& quantity) const {
+  const auto [set, p] = locate(number);
+  if (quantity == "vertical_stress") return quantity_of(*set, p, "effective_stress", D == 2 ? 1 : 2);
+  if (quantity.rfind("stress_", 0) == 0) {
+    static const char* const names[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
+    for (int k = 0; k < 6; ++k)
+      if (quantity == std::string("stress_") + names[k]) return quantity_of(*set, p, "effective_stress", k);
+  }
+  const int axis = axis_of(quantity);
+  return quantity_of(*set, p, axis >= 0 ? quantity.substr(0, quantity.size() - 2) : quantity, axis);
+}
+
+template <int D> double Simulation::Run<D>::cell_quantity(const Vector3& at, const std::string& quantity) const {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (!world->pore_water) return kNone;
+  const PoreWater<D>& water = *world->pore_water;
+  const Grid<D>& grid = world->skeleton.grid();
+  if (quantity == "pore_pressure_interpolated") {
+    // Multilinear between cell centres; centres without water stand for zero pressure at the surface.
+    Index<D> base;
+    double share[D];
+    for (int d = 0; d < D; ++d) {
+      const double x = (at[d] - grid.origin()[d]) / grid.spacing() - 0.5;
+      base[d] = static_cast<int>(std::floor(x));
+      share[d] = x - base[d];
+    }
+    double sum = 0, weight = 0;
+    for (int k = 0; k < ipow(2, D); ++k) {
+      Index<D> cell = base;
+      double w = 1;
+      for (int d = 0; d < D; ++d) {
+        const int one = k >> d & 1;
+        cell[d] = std::clamp(base[d] + one, 0, grid.cells()[d] - 1);
+        w *= one ? share[d] : 1 - share[d];
+      }
+      const int slot = grid.slot(cell);
+      if (slot < 0 || !water.cells.active(slot)) continue;
+      sum += w * water.pressure.pressure()[slot], weight += w;
+    }
+    return weight > 0 ? sum / weight : 0.0;
+  }
+  Index<D> cell;
+  for (int d = 0; d < D; ++d) cell[d] = static_cast<int>(std::floor((at[d] - grid.origin()[d]) / grid.spacing()));
+  const int slot = grid.is_cell(cell) ? grid.slot(cell) : -1;
+  if (slot < 0 || !water.cells.active(slot)) return kNone;
+  const double p = water.pressure.pressure()[slot];
+  if (quantity == "pore_pressure") return p;
+  if (quantity == "head") return p / world->unit_weight() + water.cells.centre(cell)[D - 1];
+  throw InputError("cell quantity '" + quantity + "' is unknown");
+}
+
+template <int D> std::vector<std::pair<double, double>> Simulation::Run<D>::phreatic_line() const {
+  std::vector<std::pair<double, double>> line;
+  if (!world->pore_water || D != 2) return line;
+  const PoreWater<D>& water = *world->pore_water;
+  const Grid<D>& grid = world->skeleton.grid();
+  for (const auto& face : water.cells.boundary_faces()) {
+    if (face.axis != D - 1 || face.outward < 0 || face.outside < 0) continue;
+    const Point<D> c = water.cells.centre(water.cells.cells()[face.cell].index);
+    line.emplace_back(c[0], c[D - 1] + std::min(face.distance, 1.5 * grid.spacing()));
+  }
+  std::sort(line.begin(), line.end());
+  return line;
+}
+
+template <int D> PointFrame Simulation::Run<D>::points(const std::vector<std::string>& fields) const {
+  PointFrame f;
+  for (const std::string& name : fields) {
+    FieldView v;
+    v.name = name;
+    v.components = name == "displacement" || name == "velocity" ? 3 : name == "effective_stress" ? 6 : 1;
+    f.fields.push_back(std::move(v));
+  }
+  int number = 0;
+  for (const auto& body : world->skeleton.bodies()) {
+    for (int id = 0; id < body->count(); ++id) {
+      const int p = body->find(id);
+      for (int d = 0; d < 3; ++d) f.positions.push_back(d < D ? body->position[d < D ? d : 0][p] : 0.0);
+      for (FieldView& v : f.fields) {
+        if (v.name == "body") {
+          v.values.push_back(number);
+          continue;
+        }
+        for (int c = 0; c < v.components; ++c) v.values.push_back(quantity_of(*body, p, v.name, v.components > 1 ? c : -1));
+      }
+    }
+    ++number;
+  }
+  return f;
+}
+
+template <int D> CellFrame Simulation::Run<D>::water_cells() const {
+  CellFrame f;
+  f.corners_per_cell = ipow(2, D);
+  f.fields = {{"pore_pressure", 1, {}}, {"head", 1, {}}, {"fill", 1, {}}};
+  if (!world->pore_water) return f;
+  const PoreWater<D>& water = *world->pore_water;
+  const Grid<D>& grid = world->skeleton.grid();
+  std::vector<int> vertex(grid.slots(), -1);
+  static const int order[] = {0, 1, 3, 2, 4, 5, 7, 6};  // VTK turns around each layer
+  for (const auto& cell : water.cells.cells()) {
+    for (int k = 0; k < f.corners_per_cell; ++k) {
+      const int slot = cell.nodes[order[k]];
+      if (vertex[slot] < 0) {
+        vertex[slot] = static_cast<int>(f.vertices.size() / 3);
+        const Point<D> x = grid.position(grid.index(slot));
+        for (int d = 0; d < 3; ++d) f.vertices.push_back(d < D ? x[d < D ? d : 0] : 0.0);
+      }
+      f.corners.push_back(vertex[slot]);
+    }
+    const double p = water.pressure.pressure()[cell.slot];
+    f.fields[0].values.push_back(p);
+    f.fields[1].values.push_back(p / world->unit_weight() + water.cells.centre(cell.index)[D - 1]);
+    f.fields[2].values.push_back(water.fill[cell.slot]);
+  }
+  return f;
+}
+
+#define POLDER_INSTANTIATE(D)                                                                                     \
+  template long Simulation::Run<D>::particles() const;                                                            \
+  template std::vector<Column> Simulation::Run<D>::history() const;                                               \
+  template int Simulation::Run<D>::probe_particle(const Vector3&) const;                                          \
+  template double Simulation::Run<D>::particle_quantity(int, const std::string&) const;                           \
+  template double Simulation::Run<D>::cell_quantity(const Vector3&, const std::string&) const;                    \
+  template std::vector<std::pair<double, double>> Simulation::Run<D>::phreatic_line() const;                      \
+  template PointFrame Simulation::Run<D>::points(const std::vector<std::string>&) const;                          \
+  template CellFrame Simulation::Run<D>::water_cells() const;
+POLDER_INSTANTIATE(2)
+POLDER_INSTANTIATE(3)
+
+}  // namespace polder::coupling

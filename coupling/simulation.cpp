@@ -1,0 +1,274 @@
+// Stages and the step loop.
+#include "coupling/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "coupling/initial_state.hpp"
+#include "coupling/one_layer.hpp"
+#include "coupling/simulation_run.hpp"
+
+namespace polder::coupling {
+namespace {
+
+constexpr int kRestInterval = 20;     // steps between two looks at the equilibrium ratios
+constexpr int kWaveInterval = 64;     // steps between two looks at the wave speed
+constexpr double kSpeedShare = 0.2;   // of a cell that a particle may cross in one step
+
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& sum) : sum_(sum), start_(std::chrono::steady_clock::now()) {}
+  ~Stopwatch() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  double& sum_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+}  // namespace
+
+// ---- one dimension ---------------------------------------------------------------------------------------------------
+
+template <int D> Simulation::Run<D>::Run(const Scene& s) : world(build_world<D>(s)) {
+  scene = s;
+  if (world->pore_water) {
+    PoreWater<D>& water = *world->pore_water;
+    update_water_cells(*world, 0.0);
+    set_initial_pressure(*world);
+    wet_points(*world);
+    (void)water;
+  }
+  audit = std::make_unique<Audit<D>>(*world);
+  const Totals t = audit->totals(*world);
+  initial_solid_mass = t.solid_mass;
+  initial_water_volume = t.water_volume;
+  for (const Stage& stage : scene.stages)
+    reports.push_back({stage.name, stage.mode == Stage::Mode::equilibrium ? "equilibrium" : "dynamic", 0, 0, ""});
+}
+
+template <int D> StepLimit Simulation::Run<D>::step_limit() const {
+  const double h = world->skeleton.grid().spacing();
+  StepLimit limit{h / world->skeleton.wave_speed(scene.materials), "skeleton wave"};
+  return limit;
+}
+
+template <int D> void Simulation::Run<D>::begin_stage() {
+  world->skeleton.set_laws(scene.materials, present().plastic);
+  laws_set = true;
+}
+
+template <int D> void Simulation::Run<D>::step() {
+  Stopwatch watch(timing.total);
+  if (!laws_set) begin_stage();
+  const Stage& stage_spec = present();
+  mpm::Skeleton<D>& skeleton = world->skeleton;
+  const double h = skeleton.grid().spacing();
+  if (steps % kWaveInterval == 0) wave_speed = skeleton.wave_speed(scene.materials);
+
+  // Time step: a share of the skeleton wave's limit; never more than a share of a cell for the fastest point.
+  double step_size = scene.numerics.courant * h / wave_speed;
+  reason = "skeleton wave";
+  if (scene.numerics.time_step) step_size = *scene.numerics.time_step, reason = "fixed by the case";
+  if (speed * step_size > kSpeedShare * h) step_size = kSpeedShare * h / speed, reason = "particle speed";
+  const double left = stage_start + stage_spec.duration - time;
+  const bool last = step_size >= left * (1 - 1e-9);
+  if (last) step_size = left, reason = "end of stage";
+
+  StepInput in;
+  in.time = time;
+  in.dt = dt = step_size;
+  in.damping = stage_spec.damping;
+  in.water_flows = stage_spec.water_flows;
+  if (stage_spec.gravity_ramp > 0) in.gravity = std::min(1.0, (time + dt - stage_start) / stage_spec.gravity_ramp);
+  {
+    Stopwatch mechanics(timing.mechanics);
+    const mpm::MoveResult moved = world->pore_water ? step_one_layer(*world, in, steps) : step_dry(*world, in);
+    speed = moved.largest_speed;
+  }
+  {
+    Stopwatch watch_audit(timing.audit);
+    audit->add_step(*world, dt, in.damping, in.gravity);
+  }
+  if (!last) {
+    smallest = smallest == 0 ? dt : std::min(smallest, dt);
+    largest = std::max(largest, dt);
+  }
+  time = last ? stage_start + stage_spec.duration : time + dt;
+  ++steps, ++stage_steps;
+  reports[stage].steps = stage_steps;
+  reports[stage].time = time - stage_start;
+
+  if (stage_spec.mode == Stage::Mode::equilibrium) {
+    const bool ramped = time - stage_start >= stage_spec.gravity_ramp;
+    if (ramped && stage_steps % kRestInterval == 0 && at_rest()) return end_stage("equilibrium");
+    if (last)
+      throw NumericalError("stage '" + stage_spec.name + "' did not come to rest within its duration: out-of-balance force ratio " +
+                           std::to_string(force_ratio) + " (tolerance " + std::to_string(stage_spec.force_tolerance) +
+                           "), kinetic energy ratio " + std::to_string(energy_ratio) + " (tolerance " +
+                           std::to_string(stage_spec.energy_tolerance) +
+                           "); raise its duration or damping, or let plasticity rest (plastic = false)");
+  } else if (last) {
+    end_stage("duration");
+  }
+}
+
+template <int D> bool Simulation::Run<D>::at_rest() {
+  const mpm::Skeleton<D>& skeleton = world->skeleton;
+  force_ratio = skeleton.load_norm() > 0 ? skeleton.unbalanced_force() / skeleton.load_norm() : 0.0;
+  const Totals t = audit->totals(*world);
+  energy_ratio = t.elastic_energy > 0 ? t.kinetic_energy / t.elastic_energy : (t.kinetic_energy > 0 ? 1.0 : 0.0);
+  return force_ratio < present().force_tolerance && energy_ratio < present().energy_tolerance;
+}
+
+template <int D> void Simulation::Run<D>::end_stage(const std::string& by) {
+  reports[stage].ended_by = by;
+  const Stage& ended = present();
+  for (auto& body : world->skeleton.bodies()) {
+    ParticleSet<D>& set = *body;
+    const int strain = world->layouts[set.material].plastic_strain;
+    for (int p = 0; p < set.slots(); ++p) {
+      if (set.id[p] < 0) continue;
+      for (int d = 0; d < D; ++d) {
+        if (ended.reset_displacement) set.initial_position[d][p] = set.position[d][p];
+        if (ended.reset_velocity) set.velocity[d][p] = 0;
+      }
+      if (ended.reset_displacement && strain >= 0) set.state[strain][p] = 0;
+    }
+    if (ended.reset_velocity)
+      for (Reals& c : set.affine) std::fill(c.begin(), c.end(), 0.0);
+  }
+  ++stage;
+  stage_start = time;
+  stage_steps = 0;
+  laws_set = false;
+}
+
+template <int D> void Simulation::Run<D>::visit(StateVisitor& v) {
+  const auto integer = [&](const char* name, auto& value) {
+    std::int64_t n = value;
+    v.count(name, n);
+    value = static_cast<std::remove_reference_t<decltype(value)>>(n);
+  };
+  v.number("time", time), v.number("stage_start", stage_start), v.number("dt", dt);
+  v.number("smallest_step", smallest), v.number("largest_step", largest);
+  v.number("wave_speed", wave_speed), v.number("speed", speed);
+  v.number("force_ratio", force_ratio), v.number("energy_ratio", energy_ratio);
+  v.number("initial_solid_mass", initial_solid_mass), v.number("initial_water_volume", initial_water_volume);
+  integer("steps", steps), integer("stage_steps", stage_steps), integer("stage", stage);
+  for (std::size_t s = 0; s < reports.size(); ++s) {
+    const std::string n = "stage_" + std::to_string(s);
+    std::int64_t count = reports[s].steps, ended = reports[s].ended_by.empty() ? 0 : reports[s].ended_by == "duration" ? 1 : 2;
+    v.count(n + "_steps", count), v.number(n + "_time", reports[s].time), v.count(n + "_ended", ended);
+    reports[s].steps = count, reports[s].ended_by = ended == 0 ? "" : ended == 1 ? "duration" : "equilibrium";
+  }
+  int i = 0;
+  for (double* x : audit->state()) v.number("audit_" + std::to_string(i++), *x);
+
+  mpm::Skeleton<D>& skeleton = world->skeleton;
+  double travelled = skeleton.travelled(), floor = skeleton.mass_floor();
+  std::vector<int> blocks;
+  for (int b = 0; b < skeleton.grid().occupied_blocks(); ++b) blocks.push_back(skeleton.grid().block_number(skeleton.grid().block_origin(b)));
+  v.number("travelled", travelled), v.number("mass_floor", floor), v.integers("blocks", blocks);
+  if (v.reading()) skeleton.restore(travelled, floor, blocks);
+  for (std::size_t b = 0; b < skeleton.bodies().size(); ++b) {
+    ParticleSet<D>& set = *skeleton.bodies()[b];
+    const std::string n = "body_" + std::to_string(b) + "/";
+    std::int64_t points = set.count();
+    v.count(n + "points", points);
+    v.integers(n + "id", set.id);
+    std::vector<int> ranges;
+    for (const auto& r : set.ranges) ranges.push_back(r.first), ranges.push_back(r.count);
+    v.integers(n + "ranges", ranges);
+    for (ParticleField& f : set.fields()) v.reals(n + f.name, *f.values);
+    if (!v.reading()) continue;
+    set.ranges.assign(ranges.size() / 2, {});
+    for (std::size_t r = 0; r < set.ranges.size(); ++r) set.ranges[r] = {ranges[2 * r], ranges[2 * r + 1]};
+    set.restore(static_cast<int>(points));
+  }
+  for (std::size_t l = 0; l < skeleton.loads().size(); ++l) {
+    Reals xy;
+    for (const Point<2>& x : skeleton.loads()[l].vertices()) xy.push_back(x[0]), xy.push_back(x[1]);
+    v.reals("load_" + std::to_string(l), xy);
+    if (v.reading())
+      for (std::size_t k = 0; k < skeleton.loads()[l].vertices().size(); ++k)
+        skeleton.loads()[l].vertices()[k] = {xy[2 * k], xy[2 * k + 1]};
+  }
+  if (world->pore_water) {
+    PoreWater<D>& water = *world->pore_water;
+    Reals pressure = water.pressure.pressure();
+    v.reals("pore_pressure", pressure);
+    v.number("outflow", water.outflow), v.number("storage", water.storage);
+    if (v.reading()) {
+      water.pressure.carry();
+      update_water_cells(*world, time);
+      water.pressure.pressure() = pressure;
+    }
+  }
+  if (v.reading()) laws_set = false;
+}
+
+// ---- the interface ---------------------------------------------------------------------------------------------------
+
+Simulation::Simulation(const Scene& scene) {
+  const Formulation* f = find_formulation(scene.formulation);
+  if (f == nullptr || !f->available) throw InputError("formulation '" + scene.formulation + "' is not in this version");
+  if (scene.dimension() == 2) run_ = std::make_unique<Run<2>>(scene);
+  else run_ = std::make_unique<Run<3>>(scene);
+}
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+
+const Scene& Simulation::scene() const { return run_->scene; }
+bool Simulation::finished() const { return run_->finished(); }
+void Simulation::step() { run_->step(); }
+double Simulation::time() const { return run_->time; }
+double Simulation::end_time() const {
+  double end = run_->stage_start;
+  for (std::size_t s = run_->stage; s < run_->scene.stages.size(); ++s) end += run_->scene.stages[s].duration;
+  return end;
+}
+long Simulation::steps() const { return run_->steps; }
+int Simulation::stage() const { return run_->stage; }
+const std::vector<StageReport>& Simulation::stages() const { return run_->reports; }
+double Simulation::last_step() const { return run_->dt; }
+const std::string& Simulation::step_reason() const { return run_->reason; }
+double Simulation::smallest_step() const { return run_->smallest; }
+double Simulation::largest_step() const { return run_->largest; }
+StepLimit Simulation::step_limit() const { return run_->step_limit(); }
+double Simulation::equilibrium_force_ratio() const { return run_->force_ratio; }
+double Simulation::equilibrium_energy_ratio() const { return run_->energy_ratio; }
+long Simulation::particles() const { return run_->particles(); }
+long Simulation::cells() const { return run_->cells(); }
+long Simulation::pressure_cells() const { return run_->pressure_cells(); }
+const char* Simulation::pressure_solver() const { return run_->pressure_solver(); }
+std::vector<Column> Simulation::history() const { return run_->history(); }
+int Simulation::probe_particle(const Vector3& at) const { return run_->probe_particle(at); }
+double Simulation::particle_quantity(int n, const std::string& q) const { return run_->particle_quantity(n, q); }
+double Simulation::cell_quantity(const Vector3& at, const std::string& q) const { return run_->cell_quantity(at, q); }
+std::vector<std::pair<double, double>> Simulation::phreatic_line() const { return run_->phreatic_line(); }
+PointFrame Simulation::points(const std::vector<std::string>& fields) const { return run_->points(fields); }
+CellFrame Simulation::water_cells() const { return run_->water_cells(); }
+Timing Simulation::timing() const { return run_->timing; }
+void Simulation::visit(StateVisitor& v) { run_->visit(v); }
+
+std::vector<std::string> Simulation::skipped() const {
+  std::vector<std::string> s;
+  const Scene& scene = run_->scene;
+  if (find_formulation(scene.formulation)->carrier == WaterCarrier::none)
+    s.push_back("pore water: the formulation has none, so no pressure cells, no solver, no porosity fields");
+  else {
+    s.push_back("retention curve: soil below the phreatic line is saturated");
+    if (scene.water.phreatic.empty() || scene.water.suction_above == 0) s.push_back("suction: the scene has none");
+    if (!scene.water.outside_level) s.push_back("open water on the surface: the scene has none");
+  }
+  s.push_back("discrete elements: the scene has none, so LIGGGHTS and MPI are not loaded");
+  s.push_back("blocks without particles: neither stored nor visited");
+  if (scene.numerics.transfer == Transfer::flip) s.push_back("affine particle velocities: the transfer is FLIP");
+  return s;
+}
+
+template struct Simulation::Run<2>;
+template struct Simulation::Run<3>;
+
+}  // namespace polder::coupling

@@ -1,0 +1,128 @@
+// A running simulation: stages, time control, and everything an observer may ask. The dimension is chosen once, inside.
+//
+//   Simulation s(scene);
+//   while (!s.finished()) s.step();
+//
+// Step by step use from another program is the same loop with calls in between; docs/example shows one.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/aligned.hpp"
+#include "coupling/scene.hpp"
+
+namespace polder::coupling {
+
+// What limits the time step.
+struct StepLimit {
+  double dt = 0;       // [s], the limit itself
+  std::string reason;  // "skeleton wave", "particle speed"
+};
+
+// One column of the history.
+struct Column {
+  std::string name;  // with its unit, "kinetic_energy[J]"
+  double value = 0;
+};
+
+// A named array over the points of one body, or over cells or nodes, `components` values each.
+struct FieldView {
+  std::string name;
+  int components = 1;
+  std::vector<double> values;
+};
+
+// Points of all bodies in the order of their numbers (body by body), for output.
+struct PointFrame {
+  std::vector<double> positions;  // three values a point
+  std::vector<FieldView> fields;
+  std::size_t count() const { return positions.size() / 3; }
+};
+
+// Active water cells: quadrilaterals or hexahedra.
+struct CellFrame {
+  std::vector<double> vertices;      // three values a vertex
+  std::vector<std::int64_t> corners;  // 4 (2D) or 8 (3D) vertex numbers a cell, in VTK's order
+  int corners_per_cell = 4;
+  std::vector<FieldView> fields;     // over cells
+};
+
+// Reads or writes every number that decides what comes next. Implemented by checkpoints.
+class StateVisitor {
+ public:
+  virtual ~StateVisitor() = default;
+  virtual bool reading() const = 0;
+  virtual void reals(const std::string& name, Reals& values) = 0;
+  virtual void integers(const std::string& name, std::vector<int>& values) = 0;
+  virtual void number(const std::string& name, double& value) = 0;
+  virtual void count(const std::string& name, std::int64_t& value) = 0;
+};
+
+struct StageReport {
+  std::string name, mode;
+  long steps = 0;
+  double time = 0;  // simulated [s]
+  std::string ended_by;  // "duration", "equilibrium", "" while running
+};
+
+// Wall time by part of the step [s].
+struct Timing {
+  double mechanics = 0, water = 0, audit = 0, total = 0;
+};
+
+class Simulation {
+ public:
+  // Builds the world. Throws InputError for a scene that cannot be built.
+  explicit Simulation(const Scene& scene);
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+
+  const Scene& scene() const;
+  bool finished() const;
+  // One step of the present stage. Throws NumericalError when the computation breaks down.
+  void step();
+  // Change a water boundary's or a load's value while running is done by setting scene tables before; see docs/example.
+
+  double time() const;             // [s], over all stages
+  double end_time() const;         // sum of the stages' durations [s]
+  long steps() const;
+  int stage() const;               // index, number of stages when finished
+  const std::vector<StageReport>& stages() const;
+  double last_step() const;        // dt [s]
+  const std::string& step_reason() const;  // what limited it
+  double smallest_step() const;
+  double largest_step() const;
+  StepLimit step_limit() const;    // of the present state
+  double equilibrium_force_ratio() const;
+  double equilibrium_energy_ratio() const;
+
+  long particles() const;
+  long cells() const;           // stored
+  long pressure_cells() const;  // active
+  std::vector<std::string> skipped() const;  // what this scene does not need
+  const char* pressure_solver() const;       // "" without pore water
+
+  // Balances and measures now. Names are the same in every row.
+  std::vector<Column> history() const;
+  // A named particle quantity of the point nearest to a place in the initial state (quantities.hpp).
+  int probe_particle(const Vector3& at) const;  // number over all bodies
+  double particle_quantity(int number, const std::string& quantity) const;
+  double cell_quantity(const Vector3& at, const std::string& quantity) const;  // NaN where no water is
+  std::vector<std::pair<double, double>> phreatic_line() const;  // (x, height) of the water surface, 2D
+
+  PointFrame points(const std::vector<std::string>& fields) const;
+  CellFrame water_cells() const;
+  Timing timing() const;
+
+  void visit(StateVisitor& visitor);
+
+ private:
+  struct Base;
+  template <int D> struct Run;
+  std::unique_ptr<Base> run_;
+};
+
+}  // namespace polder::coupling

@@ -1,0 +1,76 @@
+// The simulation behind its interface, for one dimension. Private to coupling/.
+#pragma once
+
+#include <chrono>
+
+#include "coupling/audit.hpp"
+#include "coupling/simulation.hpp"
+#include "coupling/world.hpp"
+
+namespace polder::coupling {
+
+struct Simulation::Base {
+  virtual ~Base() = default;
+  virtual void step() = 0;
+  virtual StepLimit step_limit() const = 0;
+  virtual std::vector<Column> history() const = 0;
+  virtual long particles() const = 0;
+  virtual long cells() const = 0;
+  virtual long pressure_cells() const = 0;
+  virtual const char* pressure_solver() const = 0;
+  virtual int probe_particle(const Vector3& at) const = 0;
+  virtual double particle_quantity(int number, const std::string& quantity) const = 0;
+  virtual double cell_quantity(const Vector3& at, const std::string& quantity) const = 0;
+  virtual std::vector<std::pair<double, double>> phreatic_line() const = 0;
+  virtual PointFrame points(const std::vector<std::string>& fields) const = 0;
+  virtual CellFrame water_cells() const = 0;
+  virtual void visit(StateVisitor& visitor) = 0;
+
+  Scene scene;
+  // Time control; all of it is part of a checkpoint.
+  double time = 0, stage_start = 0;
+  std::int64_t steps = 0, stage_steps = 0;
+  int stage = 0;
+  double dt = 0, smallest = 0, largest = 0;
+  double wave_speed = 0, speed = 0;       // [m/s], of the state the step is chosen from
+  double force_ratio = 0, energy_ratio = 0;
+  bool laws_set = false;                  // the present stage has begun
+  std::vector<StageReport> reports;
+  std::string reason;
+  Timing timing;
+
+  bool finished() const { return stage >= static_cast<int>(scene.stages.size()); }
+  const Stage& present() const { return scene.stages[stage]; }
+};
+
+template <int D> struct Simulation::Run final : Simulation::Base {
+  std::unique_ptr<World<D>> world;
+  std::unique_ptr<Audit<D>> audit;
+  double initial_solid_mass = 0, initial_water_volume = 0;
+
+  explicit Run(const Scene& s);
+  void step() override;
+  StepLimit step_limit() const override;
+  std::vector<Column> history() const override;
+  long particles() const override;
+  long cells() const override { return world->skeleton.grid().slots(); }
+  long pressure_cells() const override { return world->pore_water ? world->pore_water->cells.count() : 0; }
+  const char* pressure_solver() const override { return world->pore_water ? world->pore_water->pressure.solver_name() : ""; }
+  int probe_particle(const Vector3& at) const override;
+  double particle_quantity(int number, const std::string& quantity) const override;
+  double cell_quantity(const Vector3& at, const std::string& quantity) const override;
+  std::vector<std::pair<double, double>> phreatic_line() const override;
+  PointFrame points(const std::vector<std::string>& fields) const override;
+  CellFrame water_cells() const override;
+  void visit(StateVisitor& visitor) override;
+
+ private:
+  void begin_stage();
+  void end_stage(const std::string& by);
+  bool at_rest();  // equilibrium stages: both ratios below their tolerances
+  // Body and slot of a point by its number over all bodies.
+  std::pair<const ParticleSet<D>*, int> locate(int number) const;
+  double quantity_of(const ParticleSet<D>& set, int p, const std::string& quantity, int component) const;
+};
+
+}  // namespace polder::coupling
