@@ -10,7 +10,14 @@
 
 namespace polder {
 
-enum class ExitCode { done = 0, expectation_missed = 1, bad_input = 2, numerical_failure = 3, environment = 4, interrupted = 130 };
+enum class ExitCode {
+  done = 0,
+  expectation_missed = 1,
+  bad_input = 2,
+  numerical_failure = 3,
+  environment = 4,
+  interrupted = 130
+};
 
 // One thing that is wrong in an input file. line and column count from 1; 0 = unknown.
 struct Diagnostic {

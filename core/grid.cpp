@@ -11,25 +11,29 @@ Grid<D>::Grid(Point<D> origin, Index<D> cells, double spacing)
   stored_.assign(block_numbers(), -1);
 }
 
-template <int D> Point<D> Grid<D>::upper() const {
+template <int D>
+Point<D> Grid<D>::upper() const {
   Point<D> p;
   for (int d = 0; d < D; ++d) p[d] = origin_[d] + cells_[d] * spacing_;
   return p;
 }
 
-template <int D> int Grid<D>::block_numbers() const {
+template <int D>
+int Grid<D>::block_numbers() const {
   int n = 1;
   for (int d = 0; d < D; ++d) n *= block_count_[d];
   return n;
 }
 
-template <int D> int Grid<D>::block_number(const Index<D>& cell) const {
+template <int D>
+int Grid<D>::block_number(const Index<D>& cell) const {
   int n = 0;
   for (int d = D - 1; d >= 0; --d) n = n * block_count_[d] + cell[d] / kSide;
   return n;
 }
 
-template <int D> bool Grid<D>::activate(std::vector<int> occupied) {
+template <int D>
+bool Grid<D>::activate(std::vector<int> occupied) {
   std::sort(occupied.begin(), occupied.end());
   occupied.erase(std::unique(occupied.begin(), occupied.end()), occupied.end());
 
@@ -85,13 +89,15 @@ template <int D> bool Grid<D>::activate(std::vector<int> occupied) {
   return true;
 }
 
-template <int D> Index<D> Grid<D>::block_origin(int block) const {
+template <int D>
+Index<D> Grid<D>::block_origin(int block) const {
   Index<D> o = block_index_[block];
   for (int& x : o) x *= kSide;
   return o;
 }
 
-template <int D> int Grid<D>::slot(const Index<D>& index) const {
+template <int D>
+int Grid<D>::slot(const Index<D>& index) const {
   for (int d = 0; d < D; ++d)
     if (index[d] < 0 || index[d] > cells_[d]) return -1;
   const int block = stored_[block_number(index)];
@@ -101,26 +107,30 @@ template <int D> int Grid<D>::slot(const Index<D>& index) const {
   return block * kCells + local;
 }
 
-template <int D> Index<D> Grid<D>::index(int slot) const {
+template <int D>
+Index<D> Grid<D>::index(int slot) const {
   Index<D> i = block_origin(slot / kCells);
   int local = slot % kCells;
   for (int d = 0; d < D; ++d) i[d] += local % kSide, local /= kSide;
   return i;
 }
 
-template <int D> bool Grid<D>::is_cell(const Index<D>& index) const {
+template <int D>
+bool Grid<D>::is_cell(const Index<D>& index) const {
   for (int d = 0; d < D; ++d)
     if (index[d] < 0 || index[d] >= cells_[d]) return false;
   return true;
 }
 
-template <int D> Point<D> Grid<D>::position(const Index<D>& node) const {
+template <int D>
+Point<D> Grid<D>::position(const Index<D>& node) const {
   Point<D> p;
   for (int d = 0; d < D; ++d) p[d] = origin_[d] + node[d] * spacing_;
   return p;
 }
 
-template <int D> void Grid<D>::carry(Reals& field, int components, double fill) const {
+template <int D>
+void Grid<D>::carry(Reals& field, int components, double fill) const {
   const std::size_t width = static_cast<std::size_t>(kCells) * components;
   Reals moved(blocks() * width, fill);
   for (int b = 0; b < blocks(); ++b)

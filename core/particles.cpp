@@ -8,11 +8,14 @@
 
 namespace polder {
 
-template <int D> std::vector<ParticleField> ParticleSet<D>::fields() {
+template <int D>
+std::vector<ParticleField> ParticleSet<D>::fields() {
   static const char axis[] = "xyz";
   static const char* const component[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
   std::vector<ParticleField> all;
-  const auto add = [&](const std::string& n, Reals& r, double padding = 0) { all.push_back({n, &r, padding}); };
+  const auto add = [&](const std::string& n, Reals& r, double padding = 0) {
+    all.push_back({n, &r, padding});
+  };
   for (int d = 0; d < D; ++d) {
     add(std::string("position_") + axis[d], position[d]);
     add(std::string("velocity_") + axis[d], velocity[d]);
@@ -34,7 +37,8 @@ template <int D> std::vector<ParticleField> ParticleSet<D>::fields() {
   return all;
 }
 
-template <int D> void ParticleSet<D>::append(int n) {
+template <int D>
+void ParticleSet<D>::append(int n) {
   const int before = slots();
   for (ParticleField& f : fields()) f.values->resize(before + n, 0.0);
   for (int i = 0; i < n; ++i) id.push_back(count_ + i);
@@ -42,7 +46,8 @@ template <int D> void ParticleSet<D>::append(int n) {
   index_ids();
 }
 
-template <int D> std::vector<int> ParticleSet<D>::occupied_block_numbers(const Grid<D>& grid) const {
+template <int D>
+std::vector<int> ParticleSet<D>::occupied_block_numbers(const Grid<D>& grid) const {
   std::vector<char> seen(grid.block_numbers(), 0);
   for (int p = 0; p < slots(); ++p) {
     if (id[p] < 0) continue;
@@ -51,9 +56,11 @@ template <int D> std::vector<int> ParticleSet<D>::occupied_block_numbers(const G
       const double xi = (position[d][p] - grid.origin()[d]) / grid.spacing();
       if (!(xi >= 0 && xi <= grid.cells()[d])) {
         char text[256];
-        std::snprintf(text, sizeof text, "point %d of body '%s' left the grid at (%.6g, %.6g%s%.6g) with velocity (%.4g, %.4g) m/s",
-                      id[p], name.c_str(), position[0][p], position[1][p], D == 3 ? ", " : " ; mass ",
-                      D == 3 ? position[D - 1][p] : mass[p], velocity[0][p], velocity[1][p]);
+        std::snprintf(
+            text, sizeof text,
+            "point %d of body '%s' left the grid at (%.6g, %.6g%s%.6g) with velocity (%.4g, %.4g) m/s", id[p],
+            name.c_str(), position[0][p], position[1][p], D == 3 ? ", " : " ; mass ",
+            D == 3 ? position[D - 1][p] : mass[p], velocity[0][p], velocity[1][p]);
         throw NumericalError(text);
       }
       cell[d] = std::min(static_cast<int>(xi), grid.cells()[d] - 1);
@@ -66,7 +73,8 @@ template <int D> std::vector<int> ParticleSet<D>::occupied_block_numbers(const G
   return numbers;
 }
 
-template <int D> void ParticleSet<D>::sort(const Grid<D>& grid) {
+template <int D>
+void ParticleSet<D>::sort(const Grid<D>& grid) {
   constexpr int kCells = Grid<D>::kCells;
   // Key of a point: stored block, then cell inside it. Counting sort, stable: the order is unique.
   const int blocks = grid.occupied_blocks();
@@ -75,7 +83,8 @@ template <int D> void ParticleSet<D>::sort(const Grid<D>& grid) {
     if (id[p] < 0) continue;
     Index<D> cell;
     for (int d = 0; d < D; ++d)
-      cell[d] = std::clamp(static_cast<int>((position[d][p] - grid.origin()[d]) / grid.spacing()), 0, grid.cells()[d] - 1);
+      cell[d] = std::clamp(static_cast<int>((position[d][p] - grid.origin()[d]) / grid.spacing()), 0,
+                           grid.cells()[d] - 1);
     key[p] = grid.slot(cell);
     ++start[key[p] + 1];
   }
@@ -118,12 +127,14 @@ template <int D> void ParticleSet<D>::sort(const Grid<D>& grid) {
   index_ids();
 }
 
-template <int D> void ParticleSet<D>::restore(int count) {
+template <int D>
+void ParticleSet<D>::restore(int count) {
   count_ = count;
   index_ids();
 }
 
-template <int D> void ParticleSet<D>::index_ids() {
+template <int D>
+void ParticleSet<D>::index_ids() {
   slot_of_id_.assign(count_, -1);
   for (int p = 0; p < slots(); ++p)
     if (id[p] >= 0) slot_of_id_[id[p]] = p;

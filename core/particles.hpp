@@ -1,9 +1,9 @@
 // Material points of one body, as a structure of arrays in block and cell order.
 //
-// Every block's range is padded to whole packs with massless points at the block's centre (id -1), so kernels need no
-// masks and no tails. sort() puts the points in order of (block, cell), stably, so the order is a function of the state
-// alone. Points are re-sorted only when one of them may have left the skin of its block's tile (kSkin cells); between
-// sorts the order stands, whatever the number of threads.
+// Every block's range is padded to whole packs with massless points at the block's centre (id -1), so kernels
+// need no masks and no tails. sort() puts the points in order of (block, cell), stably, so the order is a
+// function of the state alone. Points are re-sorted only when one of them may have left the skin of its
+// block's tile (kSkin cells); between sorts the order stands, whatever the number of threads.
 #pragma once
 
 #include <string>
@@ -23,7 +23,8 @@ struct ParticleField {
   double padding;  // value of massless padding points; positions are padded with the block's centre
 };
 
-template <int D> class ParticleSet {
+template <int D>
+class ParticleSet {
  public:
   static constexpr int kStress = D == 2 ? 4 : 6;  // xx yy zz xy (yz zx)
   struct Range {
@@ -46,9 +47,9 @@ template <int D> class ParticleSet {
   std::vector<Reals> state;               // of the material law
   std::vector<double> state_padding;      // harmless state of padding points
   // Present only where the scene needs them (otherwise empty):
-  std::array<Reals, D * D> affine;             // C of the affine transfer [1/s]
-  std::array<Reals, D> body_acceleration;      // besides gravity [m/s2]
-  Reals pore_water;      // degree of saturation times water density [kg per m3 of pores]
+  std::array<Reals, D * D> affine;         // C of the affine transfer [1/s]
+  std::array<Reals, D> body_acceleration;  // besides gravity [m/s2]
+  Reals pore_water;                        // degree of saturation times water density [kg per m3 of pores]
   Reals suction_stress;  // degree of saturation times suction [Pa], isotropic part of the total stress
   Reals conductivity;    // hydraulic conductivity [m/s]
   Reals wet;             // 1 where the pores are full of water, 0 above the phreatic line

@@ -2,12 +2,14 @@
 //
 // Two meanings of a lane are used side by side:
 //   Pack       lane = particle. Weights, constitutive laws, motion: plain arithmetic without branches.
-//   Reg<N>     lane = component of one grid node (mass, momentum, force, ...). Transfers between particles and grid.
+//   Reg<N>     lane = component of one grid node (mass, momentum, force, ...). Transfers between particles
+//   and grid.
 // transpose() joins the two.
 //
-// A source file that uses this header is compiled once for each vector level (cmake/PolderOptions.cmake), every time in
-// a namespace of its own, so that one program can carry all levels. The number of lanes never changes results that are
-// computed lane by lane; levels differ from each other by the rounding of fused multiply-adds.
+// A source file that uses this header is compiled once for each vector level (cmake/PolderOptions.cmake),
+// every time in a namespace of its own, so that one program can carry all levels. The number of lanes never
+// changes results that are computed lane by lane; levels differ from each other by the rounding of fused
+// multiply-adds.
 #pragma once
 
 #include <cmath>
@@ -29,16 +31,20 @@ inline constexpr int kLanes = 2;
 #endif
 
 namespace detail {
-template <int N> struct VectorTypes;
-template <> struct VectorTypes<2> {
+template <int N>
+struct VectorTypes;
+template <>
+struct VectorTypes<2> {
   typedef double Real __attribute__((vector_size(16)));
   typedef std::int64_t Int __attribute__((vector_size(16)));
 };
-template <> struct VectorTypes<4> {
+template <>
+struct VectorTypes<4> {
   typedef double Real __attribute__((vector_size(32)));
   typedef std::int64_t Int __attribute__((vector_size(32)));
 };
-template <> struct VectorTypes<8> {
+template <>
+struct VectorTypes<8> {
   typedef double Real __attribute__((vector_size(64)));
   typedef std::int64_t Int __attribute__((vector_size(64)));
 };
@@ -47,18 +53,39 @@ template <> struct VectorTypes<8> {
 using Pack = detail::VectorTypes<kLanes>::Real;  // kLanes particles
 using Mask = detail::VectorTypes<kLanes>::Int;   // 0 or -1 in each lane; also the integer pack
 
-// ---- packs ---------------------------------------------------------------------------------------------------------
+// ---- packs
+// ---------------------------------------------------------------------------------------------------------
 
-POLDER_INLINE Pack broadcast(double x) { return x - Pack{}; }  // x - 0 folds away, x + 0 does not (signed zero)
-POLDER_INLINE Pack load(const double* p) { return *reinterpret_cast<const Pack*>(p); }  // p aligned to a pack
-POLDER_INLINE void store(double* p, Pack x) { *reinterpret_cast<Pack*>(p) = x; }
-POLDER_INLINE Pack select(Mask m, Pack a, Pack b) { return m ? a : b; }
-POLDER_INLINE Pack max(Pack a, Pack b) { return a > b ? a : b; }
-POLDER_INLINE Pack min(Pack a, Pack b) { return a < b ? a : b; }
-POLDER_INLINE Pack max(Pack a, double b) { return max(a, broadcast(b)); }
-POLDER_INLINE Pack min(Pack a, double b) { return min(a, broadcast(b)); }
-POLDER_INLINE Pack clamp(Pack x, double lo, double hi) { return min(max(x, lo), hi); }
-POLDER_INLINE Pack abs(Pack a) { return a < 0 ? -a : a; }
+POLDER_INLINE Pack broadcast(double x) {
+  return x - Pack{};
+}  // x - 0 folds away, x + 0 does not (signed zero)
+POLDER_INLINE Pack load(const double* p) {
+  return *reinterpret_cast<const Pack*>(p);
+}  // p aligned to a pack
+POLDER_INLINE void store(double* p, Pack x) {
+  *reinterpret_cast<Pack*>(p) = x;
+}
+POLDER_INLINE Pack select(Mask m, Pack a, Pack b) {
+  return m ? a : b;
+}
+POLDER_INLINE Pack max(Pack a, Pack b) {
+  return a > b ? a : b;
+}
+POLDER_INLINE Pack min(Pack a, Pack b) {
+  return a < b ? a : b;
+}
+POLDER_INLINE Pack max(Pack a, double b) {
+  return max(a, broadcast(b));
+}
+POLDER_INLINE Pack min(Pack a, double b) {
+  return min(a, broadcast(b));
+}
+POLDER_INLINE Pack clamp(Pack x, double lo, double hi) {
+  return min(max(x, lo), hi);
+}
+POLDER_INLINE Pack abs(Pack a) {
+  return a < 0 ? -a : a;
+}
 POLDER_INLINE Pack sqrt(Pack x) {
   Pack r;
   for (int i = 0; i < kLanes; ++i) r[i] = std::sqrt(x[i]);  // one vector instruction under -fno-math-errno
@@ -69,9 +96,15 @@ POLDER_INLINE bool any(Mask m) {
   for (int i = 0; i < kLanes; ++i) r |= m[i];
   return r != 0;
 }
-POLDER_INLINE bool all(Mask m) { return !any(~m); }
-POLDER_INLINE Mask to_int(Pack x) { return __builtin_convertvector(x, Mask); }  // towards zero
-POLDER_INLINE Pack to_real(Mask i) { return __builtin_convertvector(i, Pack); }
+POLDER_INLINE bool all(Mask m) {
+  return !any(~m);
+}
+POLDER_INLINE Mask to_int(Pack x) {
+  return __builtin_convertvector(x, Mask);
+}  // towards zero
+POLDER_INLINE Pack to_real(Mask i) {
+  return __builtin_convertvector(i, Pack);
+}
 POLDER_INLINE Mask floor_to_int(Pack x) {
   const Mask i = to_int(x);
   return i + (to_real(i) > x);  // the comparison is -1 where truncation went up
@@ -84,18 +117,21 @@ POLDER_INLINE Pack exp(Pack x) {
   const double magic = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to the nearest integer
   const Pack n = (x * 1.4426950408889634 + magic) - magic;
   const Pack r = (x - n * 0.693147180369123816490) - n * 1.90821492927058770002e-10;
-  const double c[] = {1. / 6227020800, 1. / 479001600, 1. / 39916800, 1. / 3628800, 1. / 362880, 1. / 40320, 1. / 5040,
-                      1. / 720,        1. / 120,       1. / 24,       1. / 6,       0.5,         1.0,        1.0};
+  const double c[] = {
+      1. / 6227020800, 1. / 479001600, 1. / 39916800, 1. / 3628800, 1. / 362880, 1. / 40320, 1. / 5040,
+      1. / 720,        1. / 120,       1. / 24,       1. / 6,       0.5,         1.0,        1.0};
   Pack p = broadcast(c[0]);
   for (int i = 1; i < 14; ++i) p = p * r + c[i];
   const Mask e = (to_int(n) + 1023) << 52;
   return p * (Pack)e;  // same bits
 }
 
-// ---- node registers ------------------------------------------------------------------------------------------------
+// ---- node registers
+// ------------------------------------------------------------------------------------------------
 
 // N doubles of one node, held in as few machine registers as the vector level allows.
-template <int N> struct Reg {
+template <int N>
+struct Reg {
   static constexpr int kChunk = N < kLanes ? N : kLanes;
   static constexpr int kCount = N / kChunk;
   using Chunk = typename detail::VectorTypes<kChunk>::Real;
@@ -123,7 +159,8 @@ template <int N> struct Reg {
 
 namespace detail {
 // r[i], r[j] <- the two interleavings of r[i] and r[j] that a butterfly transpose needs at distance S.
-template <int S> POLDER_INLINE void butterfly(Pack& a, Pack& b) {
+template <int S>
+POLDER_INLINE void butterfly(Pack& a, Pack& b) {
   const Pack x = a, y = b;
 #if defined(__AVX512F__)
   if constexpr (S == 4) {
@@ -161,8 +198,10 @@ POLDER_INLINE void transpose(Pack (&r)[kLanes]) {
   for (int i = 0; i < kLanes; i += 2) detail::butterfly<1>(r[i], r[i + 1]);
 }
 
-// Fields of kLanes particles (lane = particle) to one register for each particle (lane = component), N = 4 or 8.
-template <int N> POLDER_INLINE void to_nodes(const Pack (&fields)[N], Reg<N> (&nodes)[kLanes]) {
+// Fields of kLanes particles (lane = particle) to one register for each particle (lane = component), N = 4
+// or 8.
+template <int N>
+POLDER_INLINE void to_nodes(const Pack (&fields)[N], Reg<N> (&nodes)[kLanes]) {
   if constexpr (N >= kLanes) {
     for (int part = 0; part < N / kLanes; ++part) {
       Pack square[kLanes];
@@ -180,7 +219,8 @@ template <int N> POLDER_INLINE void to_nodes(const Pack (&fields)[N], Reg<N> (&n
 }
 
 // The inverse: one register for each particle to fields with lane = particle.
-template <int N> POLDER_INLINE void to_packs(const Reg<N> (&nodes)[kLanes], Pack (&fields)[N]) {
+template <int N>
+POLDER_INLINE void to_packs(const Reg<N> (&nodes)[kLanes], Pack (&fields)[N]) {
   if constexpr (N >= kLanes) {
     for (int part = 0; part < N / kLanes; ++part) {
       Pack square[kLanes];
@@ -190,8 +230,7 @@ template <int N> POLDER_INLINE void to_packs(const Reg<N> (&nodes)[kLanes], Pack
     }
   } else {
     Pack square[kLanes] = {};
-    for (int i = 0; i < kLanes; ++i)
-      *reinterpret_cast<typename Reg<N>::Chunk*>(&square[i]) = nodes[i].r[0];
+    for (int i = 0; i < kLanes; ++i) *reinterpret_cast<typename Reg<N>::Chunk*>(&square[i]) = nodes[i].r[0];
     transpose(square);
     for (int i = 0; i < N; ++i) fields[i] = square[i];
   }

@@ -13,17 +13,20 @@ SimdLevel choose() {
 #else
   SimdLevel best = SimdLevel::baseline;
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) best = SimdLevel::avx2;
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd"))
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("avx512cd"))
     best = SimdLevel::avx512;
   const char* wish = std::getenv("POLDER_SIMD_LEVEL");
   if (wish == nullptr) return best;
   for (SimdLevel level : {SimdLevel::baseline, SimdLevel::avx2, SimdLevel::avx512})
     if (to_string(level) == wish) {
       if (level <= best) return level;
-      throw EnvironmentError("POLDER_SIMD_LEVEL=" + std::string(wish) + ": this processor reaches only " + to_string(best));
+      throw EnvironmentError("POLDER_SIMD_LEVEL=" + std::string(wish) + ": this processor reaches only " +
+                             to_string(best));
     }
-  throw EnvironmentError("POLDER_SIMD_LEVEL=" + std::string(wish) + " is unknown; allowed: baseline, avx2, avx512");
+  throw EnvironmentError("POLDER_SIMD_LEVEL=" + std::string(wish) +
+                         " is unknown; allowed: baseline, avx2, avx512");
 #endif
 }
 
@@ -36,10 +39,14 @@ SimdLevel simd_level() {
 
 std::string to_string(SimdLevel level) {
   switch (level) {
-    case SimdLevel::baseline: return "baseline";
-    case SimdLevel::avx2: return "avx2";
-    case SimdLevel::avx512: return "avx512";
-    case SimdLevel::native: return "native";
+    case SimdLevel::baseline:
+      return "baseline";
+    case SimdLevel::avx2:
+      return "avx2";
+    case SimdLevel::avx512:
+      return "avx512";
+    case SimdLevel::native:
+      return "native";
   }
   return "?";
 }

@@ -2,7 +2,11 @@
 
 namespace polder {
 
-void set_threads(int n) { omp_set_num_threads(n > 0 ? n : omp_get_num_procs()); }
-int threads() { return omp_get_max_threads(); }
+void set_threads(int n) {
+  omp_set_num_threads(n > 0 ? n : omp_get_num_procs());
+}
+int threads() {
+  return omp_get_max_threads();
+}
 
 }  // namespace polder

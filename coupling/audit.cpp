@@ -7,13 +7,15 @@
 
 namespace polder::coupling {
 
-template <int D> Audit<D>::Audit(const World<D>& world) {
+template <int D>
+Audit<D>::Audit(const World<D>& world) {
   const Totals t = totals(world);
   initial_kinetic_ = t.kinetic_energy;
   initial_momentum_ = t.momentum;
 }
 
-template <int D> void Audit<D>::add_step(const World<D>& world, double dt, double damping, double gravity) {
+template <int D>
+void Audit<D>::add_step(const World<D>& world, double dt, double damping, double gravity) {
   struct Part {
     Work work;
     std::array<double, 3> impulse{};
@@ -38,7 +40,8 @@ template <int D> void Audit<D>::add_step(const World<D>& world, double dt, doubl
           const double stress = dt * s[1 + D + d], weight = dt * mass * gravity * world.gravity[d];
           const double first = water != nullptr ? dt * mass * water->acceleration[j] : 0.0;
           const double second = corrected ? mass * water->correction[j] : 0.0;
-          const double a = stress + weight + first, damped = damping > 0 && a * v0 != 0 ? (a * v0 > 0 ? -damping * a : damping * a) : 0.0;
+          const double a = stress + weight + first,
+                       damped = damping > 0 && a * v0 != 0 ? (a * v0 > 0 ? -damping * a : damping * a) : 0.0;
           part.work.stress += stress * mean;
           part.work.gravity += weight * mean;
           part.work.water += (first + second) * mean;
@@ -59,7 +62,8 @@ template <int D> void Audit<D>::add_step(const World<D>& world, double dt, doubl
   }
 }
 
-template <int D> Totals Audit<D>::totals(const World<D>& world) const {
+template <int D>
+Totals Audit<D>::totals(const World<D>& world) const {
   Totals t;
   t.runout = t.height = -1e300;
   for (const auto& body : world.skeleton.bodies()) {
@@ -85,18 +89,22 @@ template <int D> Totals Audit<D>::totals(const World<D>& world) const {
       double diagonal = 0, trace = 0, shear = 0;
       for (int c = 0; c < ParticleSet<D>::kStress; ++c) {
         const double s = set.stress[c][p];
-        if (c < 3) diagonal += s * s, trace += s;
-        else shear += s * s;
+        if (c < 3)
+          diagonal += s * s, trace += s;
+        else
+          shear += s * s;
       }
       if (young > 0)
-        t.elastic_energy += set.volume[p] * (0.5 * ((1 + nu) * diagonal - nu * trace * trace) + (1 + nu) * shear) / young;
+        t.elastic_energy +=
+            set.volume[p] * (0.5 * ((1 + nu) * diagonal - nu * trace * trace) + (1 + nu) * shear) / young;
     }
   }
   t.largest_speed = std::sqrt(t.largest_speed);
   return t;
 }
 
-template <int D> double Audit<D>::impulse_error(const Totals& totals) const {
+template <int D>
+double Audit<D>::impulse_error(const Totals& totals) const {
   double error = 0;
   for (int d = 0; d < D; ++d) {
     const double e = totals.momentum[d] - initial_momentum_[d] - impulse_[d];
@@ -105,18 +113,22 @@ template <int D> double Audit<D>::impulse_error(const Totals& totals) const {
   return impulse_magnitude_ > 0 ? std::sqrt(error) / impulse_magnitude_ : 0.0;
 }
 
-template <int D> double Audit<D>::energy_loss(const Totals& totals) const {
-  return work_.stress + work_.gravity + work_.water + work_.damping + work_.boundary - (totals.kinetic_energy - initial_kinetic_);
+template <int D>
+double Audit<D>::energy_loss(const Totals& totals) const {
+  return work_.stress + work_.gravity + work_.water + work_.damping + work_.boundary -
+         (totals.kinetic_energy - initial_kinetic_);
 }
 
-template <int D> std::vector<double*> Audit<D>::state() {
-  std::vector<double*> s{&work_.stress, &work_.gravity, &work_.water, &work_.damping, &work_.boundary, &initial_kinetic_,
-                         &impulse_magnitude_};
+template <int D>
+std::vector<double*> Audit<D>::state() {
+  std::vector<double*> s{&work_.stress,   &work_.gravity,    &work_.water,       &work_.damping,
+                         &work_.boundary, &initial_kinetic_, &impulse_magnitude_};
   for (int d = 0; d < 3; ++d) s.push_back(&initial_momentum_[d]), s.push_back(&impulse_[d]);
   return s;
 }
 
-template <int D> double pressure_roughness(const PoreWater<D>& water) {
+template <int D>
+double pressure_roughness(const PoreWater<D>& water) {
   const Grid<D>& grid = water.cells.grid();
   double sum = 0;
   long count = 0;

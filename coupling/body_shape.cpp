@@ -14,7 +14,8 @@ BodyShape::BodyShape(const Body& body, int dimension) : body_(body), up_(dimensi
   } else {
     lower_ = upper_ = body.polygon.front();
     for (const Vector3& x : body.polygon)
-      for (int d = 0; d < 2; ++d) lower_[d] = std::min(lower_[d], x[d]), upper_[d] = std::max(upper_[d], x[d]);
+      for (int d = 0; d < 2; ++d)
+        lower_[d] = std::min(lower_[d], x[d]), upper_[d] = std::max(upper_[d], x[d]);
   }
 }
 

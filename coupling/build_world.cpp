@@ -12,19 +12,22 @@
 namespace polder::coupling {
 namespace {
 
-template <int D> Point<D> point(const Vector3& v) {
+template <int D>
+Point<D> point(const Vector3& v) {
   Point<D> p;
   for (int d = 0; d < D; ++d) p[d] = v[d];
   return p;
 }
 
-template <int D> Vector3 vector3(const Point<D>& p) {
+template <int D>
+Vector3 vector3(const Point<D>& p) {
   Vector3 v{};
   for (int d = 0; d < D; ++d) v[d] = p[d];
   return v;
 }
 
-template <int D> Grid<D> make_grid(const GridSpec& spec) {
+template <int D>
+Grid<D> make_grid(const GridSpec& spec) {
   Index<D> cells;
   for (int d = 0; d < D; ++d) cells[d] = static_cast<int>(std::lround(spec.size[d] / spec.cell));
   return Grid<D>(point<D>(spec.origin), cells, spec.cell);
@@ -40,8 +43,8 @@ mpm::SkeletonOptions make_options(const Scene& scene) {
              : n.transfer == Transfer::tpic ? mpm::AffineKind::tpic
                                             : mpm::AffineKind::none;
   o.flip = n.flip;
-  // The cell's divergence comes from nodal values; the quadratic B-spline's own strain does not agree with it at the
-  // cell's scale, and needs no cure (docs/theory: volumetric locking).
+  // The cell's divergence comes from nodal values; the quadratic B-spline's own strain does not agree with it
+  // at the cell's scale, and needs no cure (docs/theory: volumetric locking).
   o.cell_average = n.locking == LockingCure::cell_average ||
                    (n.locking == LockingCure::automatic && o.shape != mpm::ShapeKind::quadratic_bspline);
   return o;
@@ -51,9 +54,11 @@ std::function<double(double)> in_time(const TimeTable& table) {
   return [table](double t) { return table.at(t); };
 }
 
-template <int D> mpm::BoundarySet<D> make_boundaries(const Scene& scene) {
+template <int D>
+mpm::BoundarySet<D> make_boundaries(const Scene& scene) {
   std::vector<mpm::BoundarySpec<D>> specs;
-  for (int side = 0; side < 2 * D; ++side) {  // the grid is a closed smooth box unless the case says otherwise
+  for (int side = 0; side < 2 * D;
+       ++side) {  // the grid is a closed smooth box unless the case says otherwise
     mpm::BoundarySpec<D> s;
     s.name = "side-" + std::to_string(side);
     s.side = side;
@@ -67,11 +72,21 @@ template <int D> mpm::BoundarySet<D> make_boundaries(const Scene& scene) {
     if (b.segment) s.has_segment = true, s.from = point<D>((*b.segment)[0]), s.to = point<D>((*b.segment)[1]);
     s.coefficient = b.coefficient;
     switch (b.kind) {
-      case Boundary::Kind::fixed: s.kind = mpm::BoundaryKind::fixed; break;
-      case Boundary::Kind::roller: s.kind = mpm::BoundaryKind::roller; break;
-      case Boundary::Kind::friction: s.kind = mpm::BoundaryKind::friction; break;
-      case Boundary::Kind::velocity: s.kind = mpm::BoundaryKind::velocity; break;
-      default: s.kind = mpm::BoundaryKind::free; break;
+      case Boundary::Kind::fixed:
+        s.kind = mpm::BoundaryKind::fixed;
+        break;
+      case Boundary::Kind::roller:
+        s.kind = mpm::BoundaryKind::roller;
+        break;
+      case Boundary::Kind::friction:
+        s.kind = mpm::BoundaryKind::friction;
+        break;
+      case Boundary::Kind::velocity:
+        s.kind = mpm::BoundaryKind::velocity;
+        break;
+      default:
+        s.kind = mpm::BoundaryKind::free;
+        break;
     }
     for (int d = 0; d < D; ++d)
       if (b.velocity[d]) s.prescribed[d] = true, s.velocity[d] = in_time(*b.velocity[d]);
@@ -85,9 +100,10 @@ void add_loads(const Scene& scene, mpm::Skeleton<2>& skeleton) {
     if (b.kind != Boundary::Kind::traction && b.kind != Boundary::Kind::pressure) continue;
     int per_axis = 1;
     for (const Body& body : scene.bodies) per_axis = std::max(per_axis, body.particles_per_axis);
-    mpm::SurfaceLoad load(b.name, point<2>((*b.segment)[0]), point<2>((*b.segment)[1]), scene.grid.cell / per_axis,
-                          scene.grid.space);
-    if (b.kind == Boundary::Kind::pressure) load.pressure = in_time(b.pressure);
+    mpm::SurfaceLoad load(b.name, point<2>((*b.segment)[0]), point<2>((*b.segment)[1]),
+                          scene.grid.cell / per_axis, scene.grid.space);
+    if (b.kind == Boundary::Kind::pressure)
+      load.pressure = in_time(b.pressure);
     else
       for (int d = 0; d < 2; ++d) load.traction[d] = in_time(b.traction[d]);
     skeleton.loads().push_back(std::move(load));
@@ -99,7 +115,8 @@ void add_loads(const Scene& scene, mpm::Skeleton<3>&) {
       throw InputError("boundary '" + b.name + "': loads on surfaces are available in 2D scenes");
 }
 
-template <int D> void add_body(const Scene& scene, const Body& body, World<D>& world) {
+template <int D>
+void add_body(const Scene& scene, const Body& body, World<D>& world) {
   const mpm::MaterialParameters& material = scene.materials[body.material];
   const mpm::StateLayout& layout = world.layouts[body.material];
   const BodyShape shape(body, D);
@@ -108,11 +125,12 @@ template <int D> void add_body(const Scene& scene, const Body& body, World<D>& w
   set.material = body.material;
   set.density_solid = material.density_solid;
   set.state.resize(layout.count());
-  const auto region = mpm::seed_region<D>(world.skeleton.grid(), body.particles_per_axis, point<D>(shape.lower()),
-                                          point<D>(shape.upper()), shape.is_box());
+  const auto region = mpm::seed_region<D>(world.skeleton.grid(), body.particles_per_axis,
+                                          point<D>(shape.lower()), point<D>(shape.upper()), shape.is_box());
   mpm::seed_particles<D>(set, region, scene.grid.space, material.dry_density(), body.jitter, body.seed,
                          [&](const Point<D>& x) { return shape.inside(vector3<D>(x)); });
-  if (set.count() == 0) throw InputError("body '" + body.name + "' is smaller than the spacing of its particles: it has none");
+  if (set.count() == 0)
+    throw InputError("body '" + body.name + "' is smaller than the spacing of its particles: it has none");
   set.state_padding.resize(layout.count());
   mpm::set_initial_state(material, D, 0.0, set.state_padding);
   std::vector<double> state(layout.count());
@@ -139,15 +157,18 @@ World<D>::World(Scene s, Grid<D> grid, const mpm::SkeletonOptions& options, mpm:
   for (int d = 0; d < D; ++d) gravity[d] = scene.gravity[d];
 }
 
-template <int D> double World<D>::unit_weight() const {
+template <int D>
+double World<D>::unit_weight() const {
   double g = 0;
   for (double x : gravity) g += x * x;
   // Hydraulic conductivities are defined with the earth's gravity where the scene has none.
   return scene.water.density * (g > 0 ? std::sqrt(g) : 9.81);
 }
 
-template <int D> std::unique_ptr<World<D>> build_world(const Scene& scene) {
-  auto world = std::make_unique<World<D>>(scene, make_grid<D>(scene.grid), make_options(scene), make_boundaries<D>(scene));
+template <int D>
+std::unique_ptr<World<D>> build_world(const Scene& scene) {
+  auto world = std::make_unique<World<D>>(scene, make_grid<D>(scene.grid), make_options(scene),
+                                          make_boundaries<D>(scene));
   for (const Body& body : scene.bodies) add_body<D>(scene, body, *world);
   add_loads(scene, world->skeleton);
   const Formulation* formulation = find_formulation(scene.formulation);
@@ -185,7 +206,8 @@ SizeEstimate estimate_size(const Scene& scene) {
     }
     e.particles += volume * std::pow(body.particles_per_axis / scene.grid.cell, D);
   }
-  // Fields of a particle, then the tiles and node fields of its share of the blocks (half-filled blocks on average).
+  // Fields of a particle, then the tiles and node fields of its share of the blocks (half-filled blocks on
+  // average).
   const double fields = 8.0 * (4 * D + 2 + (D == 2 ? 4 : 6) + 6);
   int per_axis = 1;
   for (const Body& body : scene.bodies) per_axis = std::max(per_axis, body.particles_per_axis);
@@ -193,7 +215,8 @@ SizeEstimate estimate_size(const Scene& scene) {
   const double block = D == 2 ? mpm::bytes_per_block<2>() : mpm::bytes_per_block<3>();
   e.bytes = e.particles * (2 * fields + 2 * block / (cells * std::pow(per_axis, D)));
   double blocks = 1;
-  for (int d = 0; d < D; ++d) blocks *= scene.grid.size[d] / scene.grid.cell / (D == 2 ? Grid<2>::kSide : Grid<3>::kSide) + 1;
+  for (int d = 0; d < D; ++d)
+    blocks *= scene.grid.size[d] / scene.grid.cell / (D == 2 ? Grid<2>::kSide : Grid<3>::kSide) + 1;
   e.bytes += 4 * blocks;
   return e;
 }

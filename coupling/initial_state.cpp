@@ -10,17 +10,21 @@
 namespace polder::coupling {
 namespace {
 
-template <int D> Vector3 at(const ParticleSet<D>& set, int p) {
+template <int D>
+Vector3 at(const ParticleSet<D>& set, int p) {
   Vector3 v{};
   for (int d = 0; d < D; ++d) v[d] = set.position[d][p];
   return v;
 }
 
 // Height of the water table over x where the scene draws one.
-double water_table(const WaterSpec& water, const Vector3& x) { return height_at(water.phreatic, x[0]); }
+double water_table(const WaterSpec& water, const Vector3& x) {
+  return height_at(water.phreatic, x[0]);
+}
 
 // Total vertical stress at x, compression positive, from the weight above.
-double overburden(const Scene& scene, const std::vector<BodyShape>& shapes, const Vector3& x, int up, bool wet) {
+double overburden(const Scene& scene, const std::vector<BodyShape>& shapes, const Vector3& x, int up,
+                  bool wet) {
   double g = 0;
   for (int d = 0; d < 3; ++d) g += scene.gravity[d] * scene.gravity[d];
   g = std::sqrt(g);
@@ -69,7 +73,8 @@ std::vector<BodyShape> shapes_of(const Scene& scene) {
 
 }  // namespace
 
-template <int D> void set_saturation(World<D>& world) {
+template <int D>
+void set_saturation(World<D>& world) {
   const WaterSpec& water = world.scene.water;
   for (auto& body : world.skeleton.bodies()) {
     ParticleSet<D>& set = *body;
@@ -93,7 +98,8 @@ template <int D> void set_saturation(World<D>& world) {
   }
 }
 
-template <int D> void set_initial_stress(World<D>& world) {
+template <int D>
+void set_initial_stress(World<D>& world) {
   const Scene& scene = world.scene;
   const std::vector<BodyShape> shapes = shapes_of(scene);
   const bool wet = world.pore_water != nullptr;
@@ -113,7 +119,8 @@ template <int D> void set_initial_stress(World<D>& world) {
           pressure = std::max(0.0, world.unit_weight() * (pressure_datum(scene, shapes, x, kUp) - x[kUp]));
         double total = overburden(scene, shapes, x, kUp, wet);
         if (full && scene.water.outside_level)  // open water standing on the surface
-          total += world.unit_weight() * std::max(0.0, scene.water.outside_level->at(0) - shapes[b].vertical_intervals(x).back().second);
+          total += world.unit_weight() * std::max(0.0, scene.water.outside_level->at(0) -
+                                                           shapes[b].vertical_intervals(x).back().second);
         const double vertical = std::max(0.0, total - pressure);
         const double horizontal = k0_at(initial, shapes[b].upper()[kUp] - x[kUp]) * vertical;
         const double suction = set.suction_stress.empty() ? 0.0 : set.suction_stress[p];
@@ -125,38 +132,47 @@ template <int D> void set_initial_stress(World<D>& world) {
   }
 }
 
-template <int D> void set_initial_pressure(World<D>& world) {
+template <int D>
+void set_initial_pressure(World<D>& world) {
   PoreWater<D>& water = *world.pore_water;
   const Scene& scene = world.scene;
   Reals& p = water.pressure.pressure();
   switch (scene.water.initial) {
-    case WaterSpec::Initial::zero: std::fill(p.begin(), p.end(), 0.0); break;
-    case WaterSpec::Initial::steady: water.pressure.steady(water.darcy_mobility); break;
+    case WaterSpec::Initial::zero:
+      std::fill(p.begin(), p.end(), 0.0);
+      break;
+    case WaterSpec::Initial::steady:
+      water.pressure.steady(water.darcy_mobility);
+      break;
     case WaterSpec::Initial::hydrostatic: {
       const std::vector<BodyShape> shapes = shapes_of(scene);
       for (const fdm::ActiveCell<D>& cell : water.cells.cells()) {
         Vector3 x{};
         const Point<D> c = water.cells.centre(cell.index);
         for (int d = 0; d < D; ++d) x[d] = c[d];
-        p[cell.slot] = std::max(0.0, world.unit_weight() * (pressure_datum(scene, shapes, x, D - 1) - x[D - 1]));
+        p[cell.slot] =
+            std::max(0.0, world.unit_weight() * (pressure_datum(scene, shapes, x, D - 1) - x[D - 1]));
       }
       break;
     }
   }
 }
 
-template <int D> void wet_points(World<D>& world) {
+template <int D>
+void wet_points(World<D>& world) {
   const Grid<D>& grid = world.skeleton.grid();
   for (auto& body : world.skeleton.bodies()) {
     ParticleSet<D>& set = *body;
     if (set.suction_stress.empty()) continue;
     const int capillary = world.layouts[set.material].capillary_factor;
     parallel_for(set.slots(), [&](int p) {
-      if (set.id[p] < 0 || set.wet[p] > 0 || (set.suction_stress[p] == 0 && (capillary < 0 || set.state[capillary][p] == 0)))
+      if (set.id[p] < 0 || set.wet[p] > 0 ||
+          (set.suction_stress[p] == 0 && (capillary < 0 || set.state[capillary][p] == 0)))
         return;
       Index<D> cell;
       for (int d = 0; d < D; ++d)
-        cell[d] = std::clamp(static_cast<int>((set.position[d][p] - grid.origin()[d]) / grid.spacing()), 0, grid.cells()[d] - 1);
+        cell[d] = std::clamp(static_cast<int>((set.position[d][p] - grid.origin()[d]) / grid.spacing()), 0,
+                             grid.cells()[d] - 1);
       const int slot = grid.slot(cell);
       if (slot < 0 || !world.pore_water->cells.active(slot)) return;
       set.suction_stress[p] = 0;

@@ -5,20 +5,24 @@
 
 namespace polder::coupling {
 
-// Which points lie below the phreatic line: full pores below it; above it the scene's degree of saturation, with suction
-// and capillary cohesion.
-template <int D> void set_saturation(World<D>& world);
+// Which points lie below the phreatic line: full pores below it; above it the scene's degree of saturation,
+// with suction and capillary cohesion.
+template <int D>
+void set_saturation(World<D>& world);
 
-// K0: vertical total stress from the weight of everything above the point (grains, pore water by its saturation), minus
-// the pore pressure below the phreatic line, times K0 of the point's layer in the horizontal; suction adds an isotropic
-// effective compression S s. Or the given field.
-template <int D> void set_initial_stress(World<D>& world);
+// K0: vertical total stress from the weight of everything above the point (grains, pore water by its
+// saturation), minus the pore pressure below the phreatic line, times K0 of the point's layer in the
+// horizontal; suction adds an isotropic effective compression S s. Or the given field.
+template <int D>
+void set_initial_stress(World<D>& world);
 
-// Pore pressure under the present conditions: zero, hydrostatic below the phreatic line, or steady flow. Needs the cells
-// to be up to date.
-template <int D> void set_initial_pressure(World<D>& world);
+// Pore pressure under the present conditions: zero, hydrostatic below the phreatic line, or steady flow.
+// Needs the cells to be up to date.
+template <int D>
+void set_initial_pressure(World<D>& world);
 
 // Suction and capillary cohesion end where a point's cell has become an active water cell.
-template <int D> void wet_points(World<D>& world);
+template <int D>
+void wet_points(World<D>& world);
 
 }  // namespace polder::coupling

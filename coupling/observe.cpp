@@ -19,13 +19,15 @@ int axis_of(const std::string& quantity) {
 
 }  // namespace
 
-template <int D> long Simulation::Run<D>::particles() const {
+template <int D>
+long Simulation::Run<D>::particles() const {
   long n = 0;
   for (const auto& body : world->skeleton.bodies()) n += body->count();
   return n;
 }
 
-template <int D> std::vector<Column> Simulation::Run<D>::history() const {
+template <int D>
+std::vector<Column> Simulation::Run<D>::history() const {
   const Totals t = audit->totals(*world);
   const Work& w = audit->work();
   const mpm::Skeleton<D>& skeleton = world->skeleton;
@@ -43,7 +45,8 @@ template <int D> std::vector<Column> Simulation::Run<D>::history() const {
   add("work_damping[J]", w.damping);
   add("work_boundary[J]", w.boundary);
   add("transfer_loss[J]", audit->energy_loss(t));
-  add("unbalanced_force_ratio[-]", skeleton.load_norm() > 0 ? skeleton.unbalanced_force() / skeleton.load_norm() : 0.0);
+  add("unbalanced_force_ratio[-]",
+      skeleton.load_norm() > 0 ? skeleton.unbalanced_force() / skeleton.load_norm() : 0.0);
   for (int d = 0; d < D; ++d) add(std::string("momentum_") + kAxis[d] + "[kg m/s]", t.momentum[d]);
   add("momentum_error[-]", audit->impulse_error(t));
   add("solid_mass_error[-]", (t.solid_mass - initial_solid_mass) / initial_solid_mass);
@@ -54,7 +57,8 @@ template <int D> std::vector<Column> Simulation::Run<D>::history() const {
     const auto& spec = skeleton.boundaries().specs()[b];
     if (spec.name.rfind("side-", 0) == 0) continue;  // unnamed sides
     for (int d = 0; d < D; ++d)
-      add("reaction:" + spec.name + "_" + kAxis[d] + "[N]", skeleton.boundaries().reaction(static_cast<int>(b))[d]);
+      add("reaction:" + spec.name + "_" + kAxis[d] + "[N]",
+          skeleton.boundaries().reaction(static_cast<int>(b))[d]);
   }
   if (world->pore_water) {
     PoreWater<D>& water = *world->pore_water;
@@ -62,33 +66,38 @@ template <int D> std::vector<Column> Simulation::Run<D>::history() const {
     add("water_mass_error[-]", initial_water_volume > 0 ? change / initial_water_volume : 0.0);
     add("water_outflow[m3]", water.outflow);
     double largest = 0;
-    for (const auto& cell : water.cells.cells()) largest = std::max(largest, water.pressure.pressure()[cell.slot]);
+    for (const auto& cell : water.cells.cells())
+      largest = std::max(largest, water.pressure.pressure()[cell.slot]);
     add("max_pore_pressure[Pa]", largest);
     add("pressure_roughness[Pa]", pressure_roughness(water));
     const fdm::Discharge& q = water.pressure.discharge();
     add("discharge:surface[m3/s]", q.surface);
     for (std::size_t b = 0; b < scene.water_boundaries.size(); ++b)
-      add("discharge:" + scene.water_boundaries[b].name + "[m3/s]", b < q.boundary.size() ? q.boundary[b] : 0.0);
+      add("discharge:" + scene.water_boundaries[b].name + "[m3/s]",
+          b < q.boundary.size() ? q.boundary[b] : 0.0);
     add("pressure_cells", static_cast<double>(water.cells.count()));
   }
   return c;
 }
 
-template <int D> int Simulation::Run<D>::probe_particle(const Vector3& at) const {
+template <int D>
+int Simulation::Run<D>::probe_particle(const Vector3& at) const {
   int number = 0, best = -1;
   double nearest = std::numeric_limits<double>::infinity();
   for (const auto& body : world->skeleton.bodies()) {
     for (int id = 0; id < body->count(); ++id, ++number) {
       const int p = body->find(id);
       double r = 0;
-      for (int d = 0; d < D; ++d) r += (body->initial_position[d][p] - at[d]) * (body->initial_position[d][p] - at[d]);
+      for (int d = 0; d < D; ++d)
+        r += (body->initial_position[d][p] - at[d]) * (body->initial_position[d][p] - at[d]);
       if (r < nearest) nearest = r, best = number;
     }
   }
   return best;
 }
 
-template <int D> std::pair<const ParticleSet<D>*, int> Simulation::Run<D>::locate(int number) const {
+template <int D>
+std::pair<const ParticleSet<D>*, int> Simulation::Run<D>::locate(int number) const {
   for (const auto& body : world->skeleton.bodies()) {
     if (number < body->count()) return {body.get(), body->find(number)};
     number -= body->count();
@@ -98,7 +107,8 @@ template <int D> std::pair<const ParticleSet<D>*, int> Simulation::Run<D>::locat
 
 // `quantity` without its component suffix; component -1 asks for a scalar (or the magnitude of a vector).
 template <int D>
-double Simulation::Run<D>::quantity_of(const ParticleSet<D>& set, int p, const std::string& q, int component) const {
+double Simulation::Run<D>::quantity_of(const ParticleSet<D>& set, int p, const std::string& q,
+                                       int component) const {
   const auto vector = [&](auto&& value) {
     if (component >= 0) return component < D ? value(component) : 0.0;
     double s = 0;
@@ -107,7 +117,8 @@ double Simulation::Run<D>::quantity_of(const ParticleSet<D>& set, int p, const s
   };
   const auto stress = [&](int k) { return k < ParticleSet<D>::kStress ? set.stress[k][p] : 0.0; };
   const double mean = (stress(0) + stress(1) + stress(2)) / 3;
-  if (q == "displacement") return vector([&](int d) { return set.position[d][p] - set.initial_position[d][p]; });
+  if (q == "displacement")
+    return vector([&](int d) { return set.position[d][p] - set.initial_position[d][p]; });
   if (q == "position") return vector([&](int d) { return set.position[d][p]; });
   if (q == "velocity") return vector([&](int d) { return set.velocity[d][p]; });
   if (q == "effective_stress") return stress(component);
@@ -124,7 +135,8 @@ double Simulation::Run<D>::quantity_of(const ParticleSet<D>& set, int p, const s
   }
   if (q == "pore_pressure") {
     if (!world->pore_water || set.wet.empty()) return 0.0;
-    if (set.wet[p] == 0) return !set.suction_stress.empty() && set.suction_stress[p] > 0 ? -scene.water.suction_above : 0.0;
+    if (set.wet[p] == 0)
+      return !set.suction_stress.empty() && set.suction_stress[p] > 0 ? -scene.water.suction_above : 0.0;
     // Cell value plus the gradient's share, from the four (eight) cells around the point that hold water.
     Vector3 x{};
     for (int d = 0; d < D; ++d) x[d] = set.position[d][p];
@@ -138,7 +150,8 @@ double Simulation::Run<D>::quantity_of(const ParticleSet<D>& set, int p, const s
   throw InputError("quantity '" + q + "' is unknown");
 }
 
-template <int D> double Simulation::Run<D>::particle_quantity(int number, const std::string& quantity) const {
+template <int D>
+double Simulation::Run<D>::particle_quantity(int number, const std::string& quantity) const {
   const auto [set, p] = locate(number);
   if (quantity == "vertical_stress") return quantity_of(*set, p, "effective_stress", D == 2 ? 1 : 2);
   if (quantity.rfind("stress_", 0) == 0) {
@@ -150,7 +163,8 @@ template <int D> double Simulation::Run<D>::particle_quantity(int number, const 
   return quantity_of(*set, p, axis >= 0 ? quantity.substr(0, quantity.size() - 2) : quantity, axis);
 }
 
-template <int D> double Simulation::Run<D>::cell_quantity(const Vector3& at, const std::string& quantity) const {
+template <int D>
+double Simulation::Run<D>::cell_quantity(const Vector3& at, const std::string& quantity) const {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (!world->pore_water) return kNone;
   const PoreWater<D>& water = *world->pore_water;
@@ -180,7 +194,8 @@ template <int D> double Simulation::Run<D>::cell_quantity(const Vector3& at, con
     return weight > 0 ? sum / weight : 0.0;
   }
   Index<D> cell;
-  for (int d = 0; d < D; ++d) cell[d] = static_cast<int>(std::floor((at[d] - grid.origin()[d]) / grid.spacing()));
+  for (int d = 0; d < D; ++d)
+    cell[d] = static_cast<int>(std::floor((at[d] - grid.origin()[d]) / grid.spacing()));
   const int slot = grid.is_cell(cell) ? grid.slot(cell) : -1;
   if (slot < 0 || !water.cells.active(slot)) return kNone;
   const double p = water.pressure.pressure()[slot];
@@ -189,7 +204,8 @@ template <int D> double Simulation::Run<D>::cell_quantity(const Vector3& at, con
   throw InputError("cell quantity '" + quantity + "' is unknown");
 }
 
-template <int D> std::vector<std::pair<double, double>> Simulation::Run<D>::phreatic_line() const {
+template <int D>
+std::vector<std::pair<double, double>> Simulation::Run<D>::phreatic_line() const {
   std::vector<std::pair<double, double>> line;
   if (!world->pore_water || D != 2) return line;
   const PoreWater<D>& water = *world->pore_water;
@@ -203,7 +219,8 @@ template <int D> std::vector<std::pair<double, double>> Simulation::Run<D>::phre
   return line;
 }
 
-template <int D> PointFrame Simulation::Run<D>::points(const std::vector<std::string>& fields) const {
+template <int D>
+PointFrame Simulation::Run<D>::points(const std::vector<std::string>& fields) const {
   PointFrame f;
   for (const std::string& name : fields) {
     FieldView v;
@@ -221,7 +238,8 @@ template <int D> PointFrame Simulation::Run<D>::points(const std::vector<std::st
           v.values.push_back(number);
           continue;
         }
-        for (int c = 0; c < v.components; ++c) v.values.push_back(quantity_of(*body, p, v.name, v.components > 1 ? c : -1));
+        for (int c = 0; c < v.components; ++c)
+          v.values.push_back(quantity_of(*body, p, v.name, v.components > 1 ? c : -1));
       }
     }
     ++number;
@@ -229,7 +247,8 @@ template <int D> PointFrame Simulation::Run<D>::points(const std::vector<std::st
   return f;
 }
 
-template <int D> CellFrame Simulation::Run<D>::water_cells() const {
+template <int D>
+CellFrame Simulation::Run<D>::water_cells() const {
   CellFrame f;
   f.corners_per_cell = ipow(2, D);
   f.fields = {{"pore_pressure", 1, {}}, {"head", 1, {}}, {"fill", 1, {}}};
@@ -256,14 +275,14 @@ template <int D> CellFrame Simulation::Run<D>::water_cells() const {
   return f;
 }
 
-#define POLDER_INSTANTIATE(D)                                                                                     \
-  template long Simulation::Run<D>::particles() const;                                                            \
-  template std::vector<Column> Simulation::Run<D>::history() const;                                               \
-  template int Simulation::Run<D>::probe_particle(const Vector3&) const;                                          \
-  template double Simulation::Run<D>::particle_quantity(int, const std::string&) const;                           \
-  template double Simulation::Run<D>::cell_quantity(const Vector3&, const std::string&) const;                    \
-  template std::vector<std::pair<double, double>> Simulation::Run<D>::phreatic_line() const;                      \
-  template PointFrame Simulation::Run<D>::points(const std::vector<std::string>&) const;                          \
+#define POLDER_INSTANTIATE(D)                                                                  \
+  template long Simulation::Run<D>::particles() const;                                         \
+  template std::vector<Column> Simulation::Run<D>::history() const;                            \
+  template int Simulation::Run<D>::probe_particle(const Vector3&) const;                       \
+  template double Simulation::Run<D>::particle_quantity(int, const std::string&) const;        \
+  template double Simulation::Run<D>::cell_quantity(const Vector3&, const std::string&) const; \
+  template std::vector<std::pair<double, double>> Simulation::Run<D>::phreatic_line() const;   \
+  template PointFrame Simulation::Run<D>::points(const std::vector<std::string>&) const;       \
   template CellFrame Simulation::Run<D>::water_cells() const;
 POLDER_INSTANTIATE(2)
 POLDER_INSTANTIATE(3)

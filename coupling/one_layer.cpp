@@ -11,7 +11,8 @@ namespace {
 
 constexpr int kWettingInterval = 16;  // steps between two looks for points that water has reached
 
-template <int D> fdm::WaterConditions<D> conditions_at(const World<D>& world, double time) {
+template <int D>
+fdm::WaterConditions<D> conditions_at(const World<D>& world, double time) {
   fdm::WaterConditions<D> c;
   c.unit_weight = world.unit_weight();
   if (world.scene.water.outside_level) c.outside_level = world.scene.water.outside_level->at(time);
@@ -44,14 +45,16 @@ void pressure_push(const mpm::Skeleton<D>& skeleton, const Reals& gradient, doub
     for (int i = block * kBlock; i < (block + 1) * kBlock; ++i) {
       const double* s = &sums[static_cast<std::size_t>(i) * 8];
       const double f = s[0] > skeleton.mass_floor() ? -scale * s[mpm::Transfer<D>::kVolume] / s[0] : 0.0;
-      for (int d = 0; d < 4; ++d) out[static_cast<std::size_t>(i) * 4 + d] = f * gradient[static_cast<std::size_t>(i) * 4 + d];
+      for (int d = 0; d < 4; ++d)
+        out[static_cast<std::size_t>(i) * 4 + d] = f * gradient[static_cast<std::size_t>(i) * 4 + d];
     }
   });
 }
 
 }  // namespace
 
-template <int D> void update_water_cells(World<D>& world, double end) {
+template <int D>
+void update_water_cells(World<D>& world, double end) {
   PoreWater<D>& w = *world.pore_water;
   const Grid<D>& grid = world.skeleton.grid();
   world.skeleton.scatter_cells(w.cell_sums);
@@ -75,7 +78,8 @@ template <int D> void update_water_cells(World<D>& world, double end) {
   w.pressure.refresh();
 }
 
-template <int D> mpm::MoveResult step_one_layer(World<D>& world, const StepInput& in, long step) {
+template <int D>
+mpm::MoveResult step_one_layer(World<D>& world, const StepInput& in, long step) {
   PoreWater<D>& w = *world.pore_water;
   mpm::Skeleton<D>& skeleton = world.skeleton;
   const double end = in.time + in.dt;
@@ -87,7 +91,8 @@ template <int D> mpm::MoveResult step_one_layer(World<D>& world, const StepInput
   skeleton.scatter(end);
 
   w.node_gradient.resize(static_cast<std::size_t>(skeleton.grid().slots()) * 4);
-  w.pressure.node_gradient(w.pressure.pressure(), fdm::BoundaryValues::present, fdm::WallNormal::inward, w.node_gradient);
+  w.pressure.node_gradient(w.pressure.pressure(), fdm::BoundaryValues::present, fdm::WallNormal::inward,
+                           w.node_gradient);
   pressure_push(skeleton, w.node_gradient, 1.0, w.acceleration);
   skeleton.predict(in.dt, gravity, in.damping, &w.acceleration);
 
@@ -109,7 +114,8 @@ template <int D> mpm::MoveResult step_one_layer(World<D>& world, const StepInput
     p.darcy_mobility = w.darcy_mobility;
     p.rhie_chow = world.scene.numerics.rhie_chow;
     w.pressure.solve(p);
-    w.pressure.node_gradient(w.pressure.increment(), fdm::BoundaryValues::homogeneous, fdm::WallNormal::inward, w.node_gradient);
+    w.pressure.node_gradient(w.pressure.increment(), fdm::BoundaryValues::homogeneous,
+                             fdm::WallNormal::inward, w.node_gradient);
     pressure_push(skeleton, w.node_gradient, in.dt, w.correction);
     correction = &w.correction;
     w.outflow += in.dt * w.pressure.discharge().total();
@@ -122,7 +128,8 @@ template <int D> mpm::MoveResult step_one_layer(World<D>& world, const StepInput
   return moved;
 }
 
-template <int D> mpm::MoveResult step_dry(World<D>& world, const StepInput& in) {
+template <int D>
+mpm::MoveResult step_dry(World<D>& world, const StepInput& in) {
   mpm::Skeleton<D>& skeleton = world.skeleton;
   const double end = in.time + in.dt;
   Point<D> gravity = world.gravity;
@@ -134,9 +141,9 @@ template <int D> mpm::MoveResult step_dry(World<D>& world, const StepInput& in) 
   return skeleton.gather(in.time, in.dt);
 }
 
-#define POLDER_INSTANTIATE(D)                                                          \
-  template void update_water_cells<D>(World<D>&, double);                              \
-  template mpm::MoveResult step_one_layer<D>(World<D>&, const StepInput&, long);       \
+#define POLDER_INSTANTIATE(D)                                                    \
+  template void update_water_cells<D>(World<D>&, double);                        \
+  template mpm::MoveResult step_one_layer<D>(World<D>&, const StepInput&, long); \
   template mpm::MoveResult step_dry<D>(World<D>&, const StepInput&);
 POLDER_INSTANTIATE(2)
 POLDER_INSTANTIATE(3)

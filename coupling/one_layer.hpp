@@ -11,18 +11,21 @@
 namespace polder::coupling {
 
 struct StepInput {
-  double time = 0;       // at the start of the step [s]
-  double dt = 0;         // [s]
-  double damping = 0;    // local damping
-  double gravity = 1;    // share of the scene's gravity
+  double time = 0;     // at the start of the step [s]
+  double dt = 0;       // [s]
+  double damping = 0;  // local damping
+  double gravity = 1;  // share of the scene's gravity
   bool water_flows = true;
 };
 
 // Cells, mask and boundary conditions for the time `end`; call after a sort or before reading cell fields.
-template <int D> void update_water_cells(World<D>& world, double end);
+template <int D>
+void update_water_cells(World<D>& world, double end);
 
-template <int D> mpm::MoveResult step_one_layer(World<D>& world, const StepInput& in, long step);
+template <int D>
+mpm::MoveResult step_one_layer(World<D>& world, const StepInput& in, long step);
 
-template <int D> mpm::MoveResult step_dry(World<D>& world, const StepInput& in);
+template <int D>
+mpm::MoveResult step_dry(World<D>& world, const StepInput& in);
 
 }  // namespace polder::coupling

@@ -1,8 +1,9 @@
-// A scene: everything a simulation needs to know before it starts, in SI units and radians, typed and complete. The case
-// file is read into it (app/), programs that link Polder can fill it by hand. A scene holds no state.
+// A scene: everything a simulation needs to know before it starts, in SI units and radians, typed and
+// complete. The case file is read into it (app/), programs that link Polder can fill it by hand. A scene
+// holds no state.
 //
-// Points have three components; 2D scenes (plane strain, axisymmetric) use the first two. The last used axis points up:
-// y in 2D, z in 3D. In axisymmetric scenes x is the radius.
+// Points have three components; 2D scenes (plane strain, axisymmetric) use the first two. The last used axis
+// points up: y in 2D, z in 3D. In axisymmetric scenes x is the radius.
 #pragma once
 
 #include <array>
@@ -26,7 +27,8 @@ struct TimeTable {
   double at(double t) const;
 };
 
-// ---- formulation: the four switches of the table in the manual ------------------------------------------------------
+// ---- formulation: the four switches of the table in the manual
+// ------------------------------------------------------
 
 enum class WaterCarrier { none, cells, skeleton, particles };
 enum class RelativeInertia { neglected, kept };
@@ -47,7 +49,8 @@ struct Formulation {
 const std::vector<Formulation>& formulations();
 const Formulation* find_formulation(const std::string& name);
 
-// ---- grid and numerics ----------------------------------------------------------------------------------------------
+// ---- grid and numerics
+// ----------------------------------------------------------------------------------------------
 
 struct GridSpec {
   Space space = Space::plane_strain;
@@ -57,30 +60,36 @@ struct GridSpec {
   mpm::ShapeKind shape = mpm::ShapeKind::gimp;
 };
 
-enum class StressOrder { musl, usl };     // stresses from re-mapped momenta, or from the updated grid velocity
-enum class Transfer { flip, apic, tpic };  // particle velocity: FLIP/PIC blend, affine, Taylor (velocity gradient)
+enum class StressOrder { musl, usl };  // stresses from re-mapped momenta, or from the updated grid velocity
+enum class Transfer {
+  flip,
+  apic,
+  tpic
+};  // particle velocity: FLIP/PIC blend, affine, Taylor (velocity gradient)
 enum class LockingCure { automatic, none, cell_average };
 
 struct NumericsSpec {
   StressOrder order = StressOrder::musl;
   Transfer transfer = Transfer::flip;
-  double flip = 0.99;              // share of FLIP in the blend [-]
+  double flip = 0.99;  // share of FLIP in the blend [-]
   LockingCure locking = LockingCure::automatic;
-  double courant = 0.5;            // step as a share of the limit of the skeleton wave [-]
-  std::optional<double> time_step; // fixed step [s]; warned about or refused beyond the limit
-  double rhie_chow = 0.05;         // chi [-]
-  double solver_tolerance = 1e-9;  // relative, pressure
+  double courant = 0.5;             // step as a share of the limit of the skeleton wave [-]
+  std::optional<double> time_step;  // fixed step [s]; warned about or refused beyond the limit
+  double rhie_chow = 0.05;          // chi [-]
+  double solver_tolerance = 1e-9;   // relative, pressure
 };
 
-// ---- water ----------------------------------------------------------------------------------------------------------
+// ---- water
+// ----------------------------------------------------------------------------------------------------------
 
 struct WaterSpec {
-  double density = 1000;            // [kg/m3]
-  double bulk_modulus = 2.2e9;      // [Pa], may be infinite
-  double viscosity = 1e-3;          // dynamic [Pa s]; converts an intrinsic permeability given in the case file
-  std::vector<Vector3> phreatic;    // polyline, soil below it is saturated; empty = all soil of porous materials is
-  double saturation_above = 0;      // degree of saturation above it [-]
-  double suction_above = 0;         // suction above it [Pa]
+  double density = 1000;        // [kg/m3]
+  double bulk_modulus = 2.2e9;  // [Pa], may be infinite
+  double viscosity = 1e-3;      // dynamic [Pa s]; converts an intrinsic permeability given in the case file
+  std::vector<Vector3>
+      phreatic;  // polyline, soil below it is saturated; empty = all soil of porous materials is
+  double saturation_above = 0;  // degree of saturation above it [-]
+  double suction_above = 0;     // suction above it [Pa]
   enum class Initial { zero, hydrostatic, steady } initial = Initial::hydrostatic;  // pore pressure below it
   std::optional<TimeTable> outside_level;  // level of open water standing over the soil's surface [m]
 };
@@ -90,17 +99,18 @@ struct WaterBoundary {
   std::string name;
   // surface: the soil ends there as at its free surface (pressure of open water, else zero)
   enum class Kind { head, pressure, impermeable, surface } kind = Kind::head;
-  int side = 0;                       // 2 * axis + (0 lower, 1 upper)
-  std::optional<Vector3> from, to;    // part of the side, whole side if absent
-  TimeTable value;                    // head: water level [m]; pressure: [Pa]
+  int side = 0;                     // 2 * axis + (0 lower, 1 upper)
+  std::optional<Vector3> from, to;  // part of the side, whole side if absent
+  TimeTable value;                  // head: water level [m]; pressure: [Pa]
 };
 
-// ---- bodies ---------------------------------------------------------------------------------------------------------
+// ---- bodies
+// ---------------------------------------------------------------------------------------------------------
 
 struct InitialStress {
   enum class Kind { none, k0, field } kind = Kind::none;
-  std::vector<double> k0;             // horizontal to vertical effective stress, one for each layer from the top
-  std::vector<double> layer_depth;    // lower boundary of each layer but the last, below the body's surface [m]
+  std::vector<double> k0;  // horizontal to vertical effective stress, one for each layer from the top
+  std::vector<double> layer_depth;  // lower boundary of each layer but the last, below the body's surface [m]
   // field: effective stress {xx, yy, zz, xy, yz, zx} = value + gradient * (height - datum) [Pa], [Pa/m], [m]
   std::array<double, 6> value{}, gradient{};
   double datum = 0;
@@ -109,8 +119,8 @@ struct InitialStress {
 struct Body {
   std::string name;
   int material = 0;  // index into Scene::materials
-  // Exactly one shape: polygon (2D; in 3D extruded between z_from and z_to along the third axis is not offered), box,
-  // disk (2D) or ball (3D).
+  // Exactly one shape: polygon (2D; in 3D extruded between z_from and z_to along the third axis is not
+  // offered), box, disk (2D) or ball (3D).
   std::vector<Vector3> polygon;
   std::optional<std::array<Vector3, 2>> box;  // lower and upper corner
   std::optional<Vector3> centre;              // of a disk or ball
@@ -118,47 +128,51 @@ struct Body {
   int particles_per_axis = 2;  // particles in a cell along each axis
   double jitter = 0;           // random displacement as a share of the particle spacing [0, 0.9]
   int seed = 1;
-  Vector3 velocity{};          // [m/s]
-  double spin = 0;             // 2D: angular velocity about the body's centroid [rad/s], counter-clockwise
+  Vector3 velocity{};  // [m/s]
+  double spin = 0;     // 2D: angular velocity about the body's centroid [rad/s], counter-clockwise
   InitialStress stress;
 };
 
-// ---- mechanical boundaries ------------------------------------------------------------------------------------------
+// ---- mechanical boundaries
+// ------------------------------------------------------------------------------------------
 
 struct Boundary {
   std::string name;
   enum class Kind { fixed, roller, friction, velocity, free, traction, pressure } kind = Kind::roller;
-  // Either a side of the grid (2 * axis + (0 lower, 1 upper)), or a segment in 2D from -> to. For constraints the soil
-  // lies to the left of the segment, seen from `from` to `to`; loads act on the material surface that lies on it.
+  // Either a side of the grid (2 * axis + (0 lower, 1 upper)), or a segment in 2D from -> to. For constraints
+  // the soil lies to the left of the segment, seen from `from` to `to`; loads act on the material surface
+  // that lies on it.
   std::optional<int> side;
   std::optional<std::array<Vector3, 2>> segment;  // also restricts a side to a part of it when both are given
-  double coefficient = 0;                 // friction: tan of the friction angle [-]
+  double coefficient = 0;                         // friction: tan of the friction angle [-]
   std::array<std::optional<TimeTable>, 3> velocity;  // velocity: prescribed components [m/s], others free
-  std::array<TimeTable, 3> traction;      // traction: force per area [Pa] on the surface
-  TimeTable pressure;                     // pressure: normal compression [Pa]; acts to the left of the segment's normal
+  std::array<TimeTable, 3> traction;                 // traction: force per area [Pa] on the surface
+  TimeTable pressure;  // pressure: normal compression [Pa]; acts to the left of the segment's normal
 };
 
-// ---- stages, measures, output ---------------------------------------------------------------------------------------
+// ---- stages, measures, output
+// ---------------------------------------------------------------------------------------
 
 struct Stage {
   std::string name;
   enum class Mode { equilibrium, dynamic } mode = Mode::dynamic;
-  double duration = 0;           // simulated time [s]; equilibrium: at most
-  double damping = 0;            // local damping alpha [0, 1)
-  bool plastic = true;           // false: materials respond elastically in this stage
-  bool water_flows = true;       // false: pore pressure stays as it is
-  double gravity_ramp = 0;       // time over which gravity grows from 0 to its value [s]
+  double duration = 0;             // simulated time [s]; equilibrium: at most
+  double damping = 0;              // local damping alpha [0, 1)
+  bool plastic = true;             // false: materials respond elastically in this stage
+  bool water_flows = true;         // false: pore pressure stays as it is
+  double gravity_ramp = 0;         // time over which gravity grows from 0 to its value [s]
   double force_tolerance = 1e-3;   // equilibrium: out-of-balance force ratio
   double energy_tolerance = 1e-3;  // equilibrium: kinetic energy ratio
-  bool reset_displacement = false;  // at the end of the stage displacements (and plastic strains) start from zero
+  bool reset_displacement =
+      false;  // at the end of the stage displacements (and plastic strains) start from zero
   bool reset_velocity = false;
 };
 
 struct Measure {
   std::string name;
   enum class Kind { particle, cell, history } kind = Kind::particle;
-  // particle: the material point nearest to `at` in the initial state is followed; cell: pore pressure at `at`;
-  // history: the column `quantity` of the history.
+  // particle: the material point nearest to `at` in the initial state is followed; cell: pore pressure at
+  // `at`; history: the column `quantity` of the history.
   std::string quantity;
   Vector3 at{};
   double every = 0;  // [s], 0 = every history line
@@ -166,19 +180,20 @@ struct Measure {
 
 struct Expectation {
   std::string measure;
-  std::string reference;       // CSV file, path relative to the case file; empty: `value`
-  std::string column;          // of the reference; default: its second
-  std::optional<double> value; // compared with the last value (norm "last"), or "max", "min"
-  std::string norm = "l2";     // l2 | max | last | largest | smallest
-  double tolerance = 0;        // relative where the reference is not 0, absolute otherwise
+  std::string reference;        // CSV file, path relative to the case file; empty: `value`
+  std::string column;           // of the reference; default: its second
+  std::optional<double> value;  // compared with the last value (norm "last"), or "max", "min"
+  std::string norm = "l2";      // l2 | max | last | largest | smallest
+  double tolerance = 0;         // relative where the reference is not 0, absolute otherwise
 };
 
 struct OutputSpec {
   // of the soil's frames, names of frame_quantities() in quantities.hpp
-  std::vector<std::string> fields{"displacement", "velocity", "effective_stress", "pore_pressure", "deviatoric_strain"};
-  double every = 0;                 // frames [s]; 0: first and last only
-  double history_every = 0;         // [s]; 0: duration / 1000
-  double checkpoint_every = 600;    // wall clock [s]
+  std::vector<std::string> fields{"displacement", "velocity", "effective_stress", "pore_pressure",
+                                  "deviatoric_strain"};
+  double every = 0;               // frames [s]; 0: first and last only
+  double history_every = 0;       // [s]; 0: duration / 1000
+  double checkpoint_every = 600;  // wall clock [s]
 };
 
 struct Scene {

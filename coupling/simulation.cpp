@@ -12,9 +12,9 @@
 namespace polder::coupling {
 namespace {
 
-constexpr int kRestInterval = 20;     // steps between two looks at the equilibrium ratios
-constexpr int kWaveInterval = 64;     // steps between two looks at the wave speed
-constexpr double kSpeedShare = 0.2;   // of a cell that a particle may cross in one step
+constexpr int kRestInterval = 20;    // steps between two looks at the equilibrium ratios
+constexpr int kWaveInterval = 64;    // steps between two looks at the wave speed
+constexpr double kSpeedShare = 0.2;  // of a cell that a particle may cross in one step
 
 class Stopwatch {
  public:
@@ -28,9 +28,11 @@ class Stopwatch {
 
 }  // namespace
 
-// ---- one dimension ---------------------------------------------------------------------------------------------------
+// ---- one dimension
+// ---------------------------------------------------------------------------------------------------
 
-template <int D> Simulation::Run<D>::Run(const Scene& s) : world(build_world<D>(s)) {
+template <int D>
+Simulation::Run<D>::Run(const Scene& s) : world(build_world<D>(s)) {
   scene = s;
   if (world->pore_water) {
     PoreWater<D>& water = *world->pore_water;
@@ -44,21 +46,25 @@ template <int D> Simulation::Run<D>::Run(const Scene& s) : world(build_world<D>(
   initial_solid_mass = t.solid_mass;
   initial_water_volume = t.water_volume;
   for (const Stage& stage : scene.stages)
-    reports.push_back({stage.name, stage.mode == Stage::Mode::equilibrium ? "equilibrium" : "dynamic", 0, 0, ""});
+    reports.push_back(
+        {stage.name, stage.mode == Stage::Mode::equilibrium ? "equilibrium" : "dynamic", 0, 0, ""});
 }
 
-template <int D> StepLimit Simulation::Run<D>::step_limit() const {
+template <int D>
+StepLimit Simulation::Run<D>::step_limit() const {
   const double h = world->skeleton.grid().spacing();
   StepLimit limit{h / world->skeleton.wave_speed(scene.materials), "skeleton wave"};
   return limit;
 }
 
-template <int D> void Simulation::Run<D>::begin_stage() {
+template <int D>
+void Simulation::Run<D>::begin_stage() {
   world->skeleton.set_laws(scene.materials, present().plastic);
   laws_set = true;
 }
 
-template <int D> void Simulation::Run<D>::step() {
+template <int D>
+void Simulation::Run<D>::step() {
   Stopwatch watch(timing.total);
   if (!laws_set) begin_stage();
   const Stage& stage_spec = present();
@@ -80,10 +86,12 @@ template <int D> void Simulation::Run<D>::step() {
   in.dt = dt = step_size;
   in.damping = stage_spec.damping;
   in.water_flows = stage_spec.water_flows;
-  if (stage_spec.gravity_ramp > 0) in.gravity = std::min(1.0, (time + dt - stage_start) / stage_spec.gravity_ramp);
+  if (stage_spec.gravity_ramp > 0)
+    in.gravity = std::min(1.0, (time + dt - stage_start) / stage_spec.gravity_ramp);
   {
     Stopwatch mechanics(timing.mechanics);
-    const mpm::MoveResult moved = world->pore_water ? step_one_layer(*world, in, steps) : step_dry(*world, in);
+    const mpm::MoveResult moved =
+        world->pore_water ? step_one_layer(*world, in, steps) : step_dry(*world, in);
     speed = moved.largest_speed;
   }
   {
@@ -103,9 +111,11 @@ template <int D> void Simulation::Run<D>::step() {
     const bool ramped = time - stage_start >= stage_spec.gravity_ramp;
     if (ramped && stage_steps % kRestInterval == 0 && at_rest()) return end_stage("equilibrium");
     if (last)
-      throw NumericalError("stage '" + stage_spec.name + "' did not come to rest within its duration: out-of-balance force ratio " +
-                           std::to_string(force_ratio) + " (tolerance " + std::to_string(stage_spec.force_tolerance) +
-                           "), kinetic energy ratio " + std::to_string(energy_ratio) + " (tolerance " +
+      throw NumericalError("stage '" + stage_spec.name +
+                           "' did not come to rest within its duration: out-of-balance force ratio " +
+                           std::to_string(force_ratio) + " (tolerance " +
+                           std::to_string(stage_spec.force_tolerance) + "), kinetic energy ratio " +
+                           std::to_string(energy_ratio) + " (tolerance " +
                            std::to_string(stage_spec.energy_tolerance) +
                            "); raise its duration or damping, or let plasticity rest (plastic = false)");
   } else if (last) {
@@ -113,15 +123,18 @@ template <int D> void Simulation::Run<D>::step() {
   }
 }
 
-template <int D> bool Simulation::Run<D>::at_rest() {
+template <int D>
+bool Simulation::Run<D>::at_rest() {
   const mpm::Skeleton<D>& skeleton = world->skeleton;
   force_ratio = skeleton.load_norm() > 0 ? skeleton.unbalanced_force() / skeleton.load_norm() : 0.0;
   const Totals t = audit->totals(*world);
-  energy_ratio = t.elastic_energy > 0 ? t.kinetic_energy / t.elastic_energy : (t.kinetic_energy > 0 ? 1.0 : 0.0);
+  energy_ratio =
+      t.elastic_energy > 0 ? t.kinetic_energy / t.elastic_energy : (t.kinetic_energy > 0 ? 1.0 : 0.0);
   return force_ratio < present().force_tolerance && energy_ratio < present().energy_tolerance;
 }
 
-template <int D> void Simulation::Run<D>::end_stage(const std::string& by) {
+template <int D>
+void Simulation::Run<D>::end_stage(const std::string& by) {
   reports[stage].ended_by = by;
   const Stage& ended = present();
   for (auto& body : world->skeleton.bodies()) {
@@ -144,7 +157,8 @@ template <int D> void Simulation::Run<D>::end_stage(const std::string& by) {
   laws_set = false;
 }
 
-template <int D> void Simulation::Run<D>::visit(StateVisitor& v) {
+template <int D>
+void Simulation::Run<D>::visit(StateVisitor& v) {
   const auto integer = [&](const char* name, auto& value) {
     std::int64_t n = value;
     v.count(name, n);
@@ -158,7 +172,9 @@ template <int D> void Simulation::Run<D>::visit(StateVisitor& v) {
   integer("steps", steps), integer("stage_steps", stage_steps), integer("stage", stage);
   for (std::size_t s = 0; s < reports.size(); ++s) {
     const std::string n = "stage_" + std::to_string(s);
-    std::int64_t count = reports[s].steps, ended = reports[s].ended_by.empty() ? 0 : reports[s].ended_by == "duration" ? 1 : 2;
+    std::int64_t count = reports[s].steps, ended = reports[s].ended_by.empty()         ? 0
+                                                   : reports[s].ended_by == "duration" ? 1
+                                                                                       : 2;
     v.count(n + "_steps", count), v.number(n + "_time", reports[s].time), v.count(n + "_ended", ended);
     reports[s].steps = count, reports[s].ended_by = ended == 0 ? "" : ended == 1 ? "duration" : "equilibrium";
   }
@@ -168,7 +184,8 @@ template <int D> void Simulation::Run<D>::visit(StateVisitor& v) {
   mpm::Skeleton<D>& skeleton = world->skeleton;
   double travelled = skeleton.travelled(), floor = skeleton.mass_floor();
   std::vector<int> blocks;
-  for (int b = 0; b < skeleton.grid().occupied_blocks(); ++b) blocks.push_back(skeleton.grid().block_number(skeleton.grid().block_origin(b)));
+  for (int b = 0; b < skeleton.grid().occupied_blocks(); ++b)
+    blocks.push_back(skeleton.grid().block_number(skeleton.grid().block_origin(b)));
   v.number("travelled", travelled), v.number("mass_floor", floor), v.integers("blocks", blocks);
   if (v.reading()) skeleton.restore(travelled, floor, blocks);
   for (std::size_t b = 0; b < skeleton.bodies().size(); ++b) {
@@ -208,49 +225,107 @@ template <int D> void Simulation::Run<D>::visit(StateVisitor& v) {
   if (v.reading()) laws_set = false;
 }
 
-// ---- the interface ---------------------------------------------------------------------------------------------------
+// ---- the interface
+// ---------------------------------------------------------------------------------------------------
 
 Simulation::Simulation(const Scene& scene) {
   const Formulation* f = find_formulation(scene.formulation);
-  if (f == nullptr || !f->available) throw InputError("formulation '" + scene.formulation + "' is not in this version");
-  if (scene.dimension() == 2) run_ = std::make_unique<Run<2>>(scene);
-  else run_ = std::make_unique<Run<3>>(scene);
+  if (f == nullptr || !f->available)
+    throw InputError("formulation '" + scene.formulation + "' is not in this version");
+  if (scene.dimension() == 2)
+    run_ = std::make_unique<Run<2>>(scene);
+  else
+    run_ = std::make_unique<Run<3>>(scene);
 }
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 
-const Scene& Simulation::scene() const { return run_->scene; }
-bool Simulation::finished() const { return run_->finished(); }
-void Simulation::step() { run_->step(); }
-double Simulation::time() const { return run_->time; }
+const Scene& Simulation::scene() const {
+  return run_->scene;
+}
+bool Simulation::finished() const {
+  return run_->finished();
+}
+void Simulation::step() {
+  run_->step();
+}
+double Simulation::time() const {
+  return run_->time;
+}
 double Simulation::end_time() const {
   double end = run_->stage_start;
   for (std::size_t s = run_->stage; s < run_->scene.stages.size(); ++s) end += run_->scene.stages[s].duration;
   return end;
 }
-long Simulation::steps() const { return run_->steps; }
-int Simulation::stage() const { return run_->stage; }
-const std::vector<StageReport>& Simulation::stages() const { return run_->reports; }
-double Simulation::last_step() const { return run_->dt; }
-const std::string& Simulation::step_reason() const { return run_->reason; }
-double Simulation::smallest_step() const { return run_->smallest; }
-double Simulation::largest_step() const { return run_->largest; }
-StepLimit Simulation::step_limit() const { return run_->step_limit(); }
-double Simulation::equilibrium_force_ratio() const { return run_->force_ratio; }
-double Simulation::equilibrium_energy_ratio() const { return run_->energy_ratio; }
-long Simulation::particles() const { return run_->particles(); }
-long Simulation::cells() const { return run_->cells(); }
-long Simulation::pressure_cells() const { return run_->pressure_cells(); }
-const char* Simulation::pressure_solver() const { return run_->pressure_solver(); }
-std::vector<Column> Simulation::history() const { return run_->history(); }
-int Simulation::probe_particle(const Vector3& at) const { return run_->probe_particle(at); }
-double Simulation::particle_quantity(int n, const std::string& q) const { return run_->particle_quantity(n, q); }
-double Simulation::cell_quantity(const Vector3& at, const std::string& q) const { return run_->cell_quantity(at, q); }
-std::vector<std::pair<double, double>> Simulation::phreatic_line() const { return run_->phreatic_line(); }
-PointFrame Simulation::points(const std::vector<std::string>& fields) const { return run_->points(fields); }
-CellFrame Simulation::water_cells() const { return run_->water_cells(); }
-Timing Simulation::timing() const { return run_->timing; }
-void Simulation::visit(StateVisitor& v) { run_->visit(v); }
+long Simulation::steps() const {
+  return run_->steps;
+}
+int Simulation::stage() const {
+  return run_->stage;
+}
+const std::vector<StageReport>& Simulation::stages() const {
+  return run_->reports;
+}
+double Simulation::last_step() const {
+  return run_->dt;
+}
+const std::string& Simulation::step_reason() const {
+  return run_->reason;
+}
+double Simulation::smallest_step() const {
+  return run_->smallest;
+}
+double Simulation::largest_step() const {
+  return run_->largest;
+}
+StepLimit Simulation::step_limit() const {
+  return run_->step_limit();
+}
+double Simulation::equilibrium_force_ratio() const {
+  return run_->force_ratio;
+}
+double Simulation::equilibrium_energy_ratio() const {
+  return run_->energy_ratio;
+}
+long Simulation::particles() const {
+  return run_->particles();
+}
+long Simulation::cells() const {
+  return run_->cells();
+}
+long Simulation::pressure_cells() const {
+  return run_->pressure_cells();
+}
+const char* Simulation::pressure_solver() const {
+  return run_->pressure_solver();
+}
+std::vector<Column> Simulation::history() const {
+  return run_->history();
+}
+int Simulation::probe_particle(const Vector3& at) const {
+  return run_->probe_particle(at);
+}
+double Simulation::particle_quantity(int n, const std::string& q) const {
+  return run_->particle_quantity(n, q);
+}
+double Simulation::cell_quantity(const Vector3& at, const std::string& q) const {
+  return run_->cell_quantity(at, q);
+}
+std::vector<std::pair<double, double>> Simulation::phreatic_line() const {
+  return run_->phreatic_line();
+}
+PointFrame Simulation::points(const std::vector<std::string>& fields) const {
+  return run_->points(fields);
+}
+CellFrame Simulation::water_cells() const {
+  return run_->water_cells();
+}
+Timing Simulation::timing() const {
+  return run_->timing;
+}
+void Simulation::visit(StateVisitor& v) {
+  run_->visit(v);
+}
 
 std::vector<std::string> Simulation::skipped() const {
   std::vector<std::string> s;
@@ -259,12 +334,14 @@ std::vector<std::string> Simulation::skipped() const {
     s.push_back("pore water: the formulation has none, so no pressure cells, no solver, no porosity fields");
   else {
     s.push_back("retention curve: soil below the phreatic line is saturated");
-    if (scene.water.phreatic.empty() || scene.water.suction_above == 0) s.push_back("suction: the scene has none");
+    if (scene.water.phreatic.empty() || scene.water.suction_above == 0)
+      s.push_back("suction: the scene has none");
     if (!scene.water.outside_level) s.push_back("open water on the surface: the scene has none");
   }
   s.push_back("discrete elements: the scene has none, so LIGGGHTS and MPI are not loaded");
   s.push_back("blocks without particles: neither stored nor visited");
-  if (scene.numerics.transfer == Transfer::flip) s.push_back("affine particle velocities: the transfer is FLIP");
+  if (scene.numerics.transfer == Transfer::flip)
+    s.push_back("affine particle velocities: the transfer is FLIP");
   return s;
 }
 

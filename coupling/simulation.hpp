@@ -1,4 +1,5 @@
-// A running simulation: stages, time control, and everything an observer may ask. The dimension is chosen once, inside.
+// A running simulation: stages, time control, and everything an observer may ask. The dimension is chosen
+// once, inside.
 //
 //   Simulation s(scene);
 //   while (!s.finished()) s.step();
@@ -44,10 +45,10 @@ struct PointFrame {
 
 // Active water cells: quadrilaterals or hexahedra.
 struct CellFrame {
-  std::vector<double> vertices;      // three values a vertex
+  std::vector<double> vertices;       // three values a vertex
   std::vector<std::int64_t> corners;  // 4 (2D) or 8 (3D) vertex numbers a cell, in VTK's order
   int corners_per_cell = 4;
-  std::vector<FieldView> fields;     // over cells
+  std::vector<FieldView> fields;  // over cells
 };
 
 // Reads or writes every number that decides what comes next. Implemented by checkpoints.
@@ -64,7 +65,7 @@ class StateVisitor {
 struct StageReport {
   std::string name, mode;
   long steps = 0;
-  double time = 0;  // simulated [s]
+  double time = 0;       // simulated [s]
   std::string ended_by;  // "duration", "equilibrium", "" while running
 };
 
@@ -84,24 +85,25 @@ class Simulation {
   bool finished() const;
   // One step of the present stage. Throws NumericalError when the computation breaks down.
   void step();
-  // Change a water boundary's or a load's value while running is done by setting scene tables before; see docs/example.
+  // Change a water boundary's or a load's value while running is done by setting scene tables before; see
+  // docs/example.
 
-  double time() const;             // [s], over all stages
-  double end_time() const;         // sum of the stages' durations [s]
+  double time() const;      // [s], over all stages
+  double end_time() const;  // sum of the stages' durations [s]
   long steps() const;
-  int stage() const;               // index, number of stages when finished
+  int stage() const;  // index, number of stages when finished
   const std::vector<StageReport>& stages() const;
-  double last_step() const;        // dt [s]
+  double last_step() const;                // dt [s]
   const std::string& step_reason() const;  // what limited it
   double smallest_step() const;
   double largest_step() const;
-  StepLimit step_limit() const;    // of the present state
+  StepLimit step_limit() const;  // of the present state
   double equilibrium_force_ratio() const;
   double equilibrium_energy_ratio() const;
 
   long particles() const;
-  long cells() const;           // stored
-  long pressure_cells() const;  // active
+  long cells() const;                        // stored
+  long pressure_cells() const;               // active
   std::vector<std::string> skipped() const;  // what this scene does not need
   const char* pressure_solver() const;       // "" without pore water
 
@@ -121,7 +123,8 @@ class Simulation {
 
  private:
   struct Base;
-  template <int D> struct Run;
+  template <int D>
+  struct Run;
   std::unique_ptr<Base> run_;
 };
 

@@ -32,9 +32,9 @@ struct Simulation::Base {
   std::int64_t steps = 0, stage_steps = 0;
   int stage = 0;
   double dt = 0, smallest = 0, largest = 0;
-  double wave_speed = 0, speed = 0;       // [m/s], of the state the step is chosen from
+  double wave_speed = 0, speed = 0;  // [m/s], of the state the step is chosen from
   double force_ratio = 0, energy_ratio = 0;
-  bool laws_set = false;                  // the present stage has begun
+  bool laws_set = false;  // the present stage has begun
   std::vector<StageReport> reports;
   std::string reason;
   Timing timing;
@@ -43,7 +43,8 @@ struct Simulation::Base {
   const Stage& present() const { return scene.stages[stage]; }
 };
 
-template <int D> struct Simulation::Run final : Simulation::Base {
+template <int D>
+struct Simulation::Run final : Simulation::Base {
   std::unique_ptr<World<D>> world;
   std::unique_ptr<Audit<D>> audit;
   double initial_solid_mass = 0, initial_water_volume = 0;
@@ -55,7 +56,9 @@ template <int D> struct Simulation::Run final : Simulation::Base {
   long particles() const override;
   long cells() const override { return world->skeleton.grid().slots(); }
   long pressure_cells() const override { return world->pore_water ? world->pore_water->cells.count() : 0; }
-  const char* pressure_solver() const override { return world->pore_water ? world->pore_water->pressure.solver_name() : ""; }
+  const char* pressure_solver() const override {
+    return world->pore_water ? world->pore_water->pressure.solver_name() : "";
+  }
   int probe_particle(const Vector3& at) const override;
   double particle_quantity(int number, const std::string& quantity) const override;
   double cell_quantity(const Vector3& at, const std::string& quantity) const override;

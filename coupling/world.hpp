@@ -1,5 +1,5 @@
-// Everything a running simulation owns: arrays, no behaviour of its own. Built from a scene once; what the scene does not
-// need is not there (pore_water is null in a dry scene).
+// Everything a running simulation owns: arrays, no behaviour of its own. Built from a scene once; what the
+// scene does not need is not there (pore_water is null in a dry scene).
 #pragma once
 
 #include <memory>
@@ -13,22 +13,25 @@
 namespace polder::coupling {
 
 // Pore water in the grid's cells (one-layer formulation).
-template <int D> struct PoreWater {
+template <int D>
+struct PoreWater {
   PoreWater(const Grid<D>& grid, Space space, const fdm::WaterProperties<D>& properties)
       : cells(grid, space), pressure(cells, properties) {}
 
   fdm::WaterCells<D> cells;
   fdm::PressureField<D> pressure;
   fdm::WaterConditions<D> conditions;
-  // Cells (slots): saturated soil's share, its porosity, its conductivity over unit weight. Nodes (slots * 4 or slots).
+  // Cells (slots): saturated soil's share, its porosity, its conductivity over unit weight. Nodes (slots * 4
+  // or slots).
   Reals cell_sums, fill, porosity, darcy_mobility;
   Reals node_gradient, acceleration, correction, mobility, v_predicted, divergence;
-  double outflow = 0;            // water that has left by Darcy flow [m3]
-  double storage = 0;            // taken up by compression of the water [m3]
-  double initial_volume = 0;     // in the pores of saturated soil at the start [m3]
+  double outflow = 0;         // water that has left by Darcy flow [m3]
+  double storage = 0;         // taken up by compression of the water [m3]
+  double initial_volume = 0;  // in the pores of saturated soil at the start [m3]
 };
 
-template <int D> struct World {
+template <int D>
+struct World {
   Scene scene;
   std::vector<mpm::StateLayout> layouts;  // of the materials
   mpm::Skeleton<D> skeleton;
@@ -40,8 +43,10 @@ template <int D> struct World {
   double unit_weight() const;  // of water [N/m3]
 };
 
-// Grid, bodies with their initial stress and pore pressure, boundaries. Throws InputError for what a scene cannot be.
-template <int D> std::unique_ptr<World<D>> build_world(const Scene& scene);
+// Grid, bodies with their initial stress and pore pressure, boundaries. Throws InputError for what a scene
+// cannot be.
+template <int D>
+std::unique_ptr<World<D>> build_world(const Scene& scene);
 
 // Estimates made before anything is allocated.
 struct SizeEstimate {

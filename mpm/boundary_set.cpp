@@ -9,7 +9,8 @@ constexpr double kOn = 1e-6;       // a node this close to a line, in cells, lie
 constexpr double kBehind = 2.001;  // rows of nodes held behind an inner segment, in cells
 
 // Is the node constrained by the boundary, and with which normal?
-template <int D> bool constrained(const Grid<D>& grid, const BoundarySpec<D>& spec, const Index<D>& node, Point<D>& normal) {
+template <int D>
+bool constrained(const Grid<D>& grid, const BoundarySpec<D>& spec, const Index<D>& node, Point<D>& normal) {
   normal = Point<D>{};
   const double h = grid.spacing();
   if (spec.side >= 0) {
@@ -38,7 +39,8 @@ template <int D> bool constrained(const Grid<D>& grid, const BoundarySpec<D>& sp
 
 }  // namespace
 
-template <int D> void BoundarySet<D>::update(const Grid<D>& grid) {
+template <int D>
+void BoundarySet<D>::update(const Grid<D>& grid) {
   if (revision_ == grid.revision()) return;
   revision_ = grid.revision();
   nodes_.clear();
@@ -55,7 +57,8 @@ template <int D> void BoundarySet<D>::update(const Grid<D>& grid) {
       Point<D> normal;
       if (!inside || !constrained<D>(grid, spec, node, normal)) continue;
       if (overrules)
-        std::erase_if(nodes_, [&](const Node& n) { return n.slot == slot && specs_[n.spec].side == spec.side; });
+        std::erase_if(nodes_,
+                      [&](const Node& n) { return n.slot == slot && specs_[n.spec].side == spec.side; });
       if (spec.kind == BoundaryKind::free) continue;
       nodes_.push_back({slot, static_cast<int>(s), normal});
     }
@@ -77,7 +80,8 @@ void BoundarySet<D>::apply(double time, double dt, const Reals& sums, Reals& v, 
   std::vector<std::array<double, D>> prescribed(specs_.size());
   for (std::size_t s = 0; s < specs_.size(); ++s)
     for (int d = 0; d < D; ++d)
-      if (specs_[s].kind == BoundaryKind::velocity && specs_[s].prescribed[d]) prescribed[s][d] = specs_[s].velocity[d](time);
+      if (specs_[s].kind == BoundaryKind::velocity && specs_[s].prescribed[d])
+        prescribed[s][d] = specs_[s].velocity[d](time);
   for (const Node& n : nodes_) {
     double* u = &v[static_cast<std::size_t>(n.slot) * 4];
     const double mass = sums[static_cast<std::size_t>(n.slot) * 8];
@@ -85,7 +89,8 @@ void BoundarySet<D>::apply(double time, double dt, const Reals& sums, Reals& v, 
     for (int d = 0; d < D; ++d) before[d] = u[d];
     const BoundarySpec<D>& spec = specs_[n.spec];
     switch (spec.kind) {
-      case BoundaryKind::free: break;
+      case BoundaryKind::free:
+        break;
       case BoundaryKind::fixed:
         for (int d = 0; d < D; ++d) u[d] = 0;
         break;

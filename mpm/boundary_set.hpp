@@ -1,12 +1,12 @@
 // Mechanical boundaries of the background grid: constraints on nodal velocities.
 //
-// A boundary acts along a side of the grid or behind a segment inside it. The list of constrained nodes is built when the
-// grid's numbering changes and applied in the order of the case file, so that at a corner the later boundary has the last
-// word where two prescribe the same component.
+// A boundary acts along a side of the grid or behind a segment inside it. The list of constrained nodes is
+// built when the grid's numbering changes and applied in the order of the case file, so that at a corner the
+// later boundary has the last word where two prescribe the same component.
 //
-// Coulomb friction: a node that presses against the boundary loses its normal velocity; the tangential velocity falls by
-// at most `coefficient` times that loss. The normal force is what the node's acceleration says, so where pore pressure is
-// part of the acceleration it is the effective one.
+// Coulomb friction: a node that presses against the boundary loses its normal velocity; the tangential
+// velocity falls by at most `coefficient` times that loss. The normal force is what the node's acceleration
+// says, so where pore pressure is part of the acceleration it is the effective one.
 #pragma once
 
 #include <array>
@@ -21,30 +21,34 @@ namespace polder::mpm {
 
 enum class BoundaryKind { free, fixed, roller, friction, velocity };
 
-template <int D> struct BoundarySpec {
+template <int D>
+struct BoundarySpec {
   std::string name;
   BoundaryKind kind = BoundaryKind::roller;
-  int side = -1;            // 2 * axis + (0 lower, 1 upper), or -1
-  bool has_segment = false; // 2D: restricts the side to its part between the ends, or stands alone inside the grid
-  Point<D> from{}, to{};    // the soil lies to the left, seen from `from` to `to`
-  double coefficient = 0;   // friction
-  std::array<bool, D> prescribed{};                        // velocity: which components
+  int side = -1;  // 2 * axis + (0 lower, 1 upper), or -1
+  bool has_segment =
+      false;  // 2D: restricts the side to its part between the ends, or stands alone inside the grid
+  Point<D> from{}, to{};             // the soil lies to the left, seen from `from` to `to`
+  double coefficient = 0;            // friction
+  std::array<bool, D> prescribed{};  // velocity: which components
   std::array<std::function<double(double)>, D> velocity{};  // [m/s] at time t
 };
 
-template <int D> class BoundarySet {
+template <int D>
+class BoundarySet {
  public:
   // Later boundaries overrule earlier ones on the sides they share. Sides without any boundary are free.
-  explicit BoundarySet(std::vector<BoundarySpec<D>> specs = {}) : specs_(std::move(specs)), reaction_(specs_.size()) {}
+  explicit BoundarySet(std::vector<BoundarySpec<D>> specs = {})
+      : specs_(std::move(specs)), reaction_(specs_.size()) {}
 
   const std::vector<BoundarySpec<D>>& specs() const { return specs_; }
 
   // Find the constrained nodes; cheap when the grid has not changed.
   void update(const Grid<D>& grid);
 
-  // Constrain v [slots * 4] at time t. mass [sums, stride 8] turns velocity changes into reactions; with `record` the
-  // force of each boundary on the material over dt is kept. `friction` false leaves tangential velocities alone (the
-  // second mapping of MUSL, which has friction in it already).
+  // Constrain v [slots * 4] at time t. mass [sums, stride 8] turns velocity changes into reactions; with
+  // `record` the force of each boundary on the material over dt is kept. `friction` false leaves tangential
+  // velocities alone (the second mapping of MUSL, which has friction in it already).
   void apply(double time, double dt, const Reals& sums, Reals& v, bool friction, bool record);
 
   // Force of boundary i on the material in the last recorded step [N per m thickness, per radian, or N].

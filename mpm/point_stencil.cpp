@@ -25,8 +25,10 @@ void axis(ShapeKind shape, double x, double l, int last, int& base, double* w, d
   g[1] = -(g[0] + g[2]);
   for (double* v : {w, g}) {  // fold what lies beyond the grid's sides (mpm/stencil.hpp)
     const double v0 = v[0], v1 = v[1], v2 = v[2];
-    if (base < 0) v[0] = v1 + 2 * v0, v[1] = v2 - v0, v[2] = 0;
-    else if (base > last - 2) v[0] = 0, v[1] = v0 - v2, v[2] = v1 + 2 * v2;
+    if (base < 0)
+      v[0] = v1 + 2 * v0, v[1] = v2 - v0, v[2] = 0;
+    else if (base > last - 2)
+      v[0] = 0, v[1] = v0 - v2, v[2] = v1 + 2 * v2;
   }
   base = std::clamp(base, 0, last - 2);
 }
@@ -34,12 +36,13 @@ void axis(ShapeKind shape, double x, double l, int last, int& base, double* w, d
 }  // namespace
 
 template <int D>
-PointStencil<D> point_stencil(const Grid<D>& grid, ShapeKind shape, const Point<D>& position, const Point<D>& half_size) {
+PointStencil<D> point_stencil(const Grid<D>& grid, ShapeKind shape, const Point<D>& position,
+                              const Point<D>& half_size) {
   int base[D];
   double w[D][3], g[D][3];
   for (int d = 0; d < D; ++d) {
-    axis(shape, (position[d] - grid.origin()[d]) / grid.spacing(), half_size[d] / grid.spacing(), grid.cells()[d], base[d],
-         w[d], g[d]);
+    axis(shape, (position[d] - grid.origin()[d]) / grid.spacing(), half_size[d] / grid.spacing(),
+         grid.cells()[d], base[d], w[d], g[d]);
     for (double& x : g[d]) x /= grid.spacing();
   }
   PointStencil<D> s;
@@ -64,7 +67,8 @@ PointStencil<D> point_stencil(const Grid<D>& grid, ShapeKind shape, const Point<
 }
 
 template <int D>
-Point<D> interpolate(const Grid<D>& grid, ShapeKind shape, const Point<D>& position, const Reals& field, int stride) {
+Point<D> interpolate(const Grid<D>& grid, ShapeKind shape, const Point<D>& position, const Reals& field,
+                     int stride) {
   const PointStencil<D> s = point_stencil<D>(grid, shape, position, Point<D>{});
   Point<D> v{};
   for (int n = 0; n < s.count; ++n)

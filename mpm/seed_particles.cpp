@@ -22,7 +22,8 @@ class Random {
   std::uint64_t state_;
 };
 
-template <int D, class F> void each(const SeedRegion<D>& region, const F& f) {
+template <int D, class F>
+void each(const SeedRegion<D>& region, const F& f) {
   long total = 1;
   for (int d = 0; d < D; ++d) total *= region.count[d];
   for (long i = 0; i < total; ++i) {
@@ -39,7 +40,8 @@ template <int D, class F> void each(const SeedRegion<D>& region, const F& f) {
 }  // namespace
 
 template <int D>
-SeedRegion<D> seed_region(const Grid<D>& grid, int per_axis, const Point<D>& lower, const Point<D>& upper, bool anchored) {
+SeedRegion<D> seed_region(const Grid<D>& grid, int per_axis, const Point<D>& lower, const Point<D>& upper,
+                          bool anchored) {
   SeedRegion<D> r;
   const double step = grid.spacing() / per_axis;
   for (int d = 0; d < D; ++d) {
@@ -58,15 +60,16 @@ SeedRegion<D> seed_region(const Grid<D>& grid, int per_axis, const Point<D>& low
   return r;
 }
 
-template <int D> long count_particles(const SeedRegion<D>& region, const std::function<bool(const Point<D>&)>& inside) {
+template <int D>
+long count_particles(const SeedRegion<D>& region, const std::function<bool(const Point<D>&)>& inside) {
   long n = 0;
   each<D>(region, [&](const Point<D>& x) { n += inside(x); });
   return n;
 }
 
 template <int D>
-void seed_particles(ParticleSet<D>& set, const SeedRegion<D>& region, Space space, double dry_density, double jitter, int seed,
-                    const std::function<bool(const Point<D>&)>& inside) {
+void seed_particles(ParticleSet<D>& set, const SeedRegion<D>& region, Space space, double dry_density,
+                    double jitter, int seed, const std::function<bool(const Point<D>&)>& inside) {
   set.append(static_cast<int>(count_particles<D>(region, inside)));
   Random random(static_cast<std::uint64_t>(seed));
   double cell = 1, smallest = region.spacing[0];
@@ -86,10 +89,10 @@ void seed_particles(ParticleSet<D>& set, const SeedRegion<D>& region, Space spac
   });
 }
 
-#define POLDER_INSTANTIATE(D)                                                                                          \
-  template SeedRegion<D> seed_region<D>(const Grid<D>&, int, const Point<D>&, const Point<D>&, bool);                  \
-  template long count_particles<D>(const SeedRegion<D>&, const std::function<bool(const Point<D>&)>&);                 \
-  template void seed_particles<D>(ParticleSet<D>&, const SeedRegion<D>&, Space, double, double, int,                   \
+#define POLDER_INSTANTIATE(D)                                                                          \
+  template SeedRegion<D> seed_region<D>(const Grid<D>&, int, const Point<D>&, const Point<D>&, bool);  \
+  template long count_particles<D>(const SeedRegion<D>&, const std::function<bool(const Point<D>&)>&); \
+  template void seed_particles<D>(ParticleSet<D>&, const SeedRegion<D>&, Space, double, double, int,   \
                                   const std::function<bool(const Point<D>&)>&);
 POLDER_INSTANTIATE(2)
 POLDER_INSTANTIATE(3)

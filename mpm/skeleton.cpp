@@ -18,24 +18,28 @@ Skeleton<D>::Skeleton(Grid<D> grid, SkeletonOptions options, BoundarySet<D> boun
   transfer_.shape = options.shape;
 }
 
-template <int D> ParticleSet<D>& Skeleton<D>::add_body() {
+template <int D>
+ParticleSet<D>& Skeleton<D>::add_body() {
   bodies_.push_back(std::make_unique<ParticleSet<D>>());
   return *bodies_.back();
 }
 
-template <int D> void Skeleton<D>::set_laws(const std::vector<MaterialParameters>& materials, bool plastic) {
+template <int D>
+void Skeleton<D>::set_laws(const std::vector<MaterialParameters>& materials, bool plastic) {
   laws_.clear();
   for (const auto& body : bodies_) laws_.push_back(make_law_handle(D, materials[body->material], plastic));
   set_bodies();
 }
 
-template <int D> void Skeleton<D>::set_bodies() {
+template <int D>
+void Skeleton<D>::set_bodies() {
   transfer_.bodies.clear();
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     transfer_.bodies.push_back({bodies_[b].get(), b < laws_.size() ? laws_[b].get() : nullptr});
 }
 
-template <int D> void Skeleton<D>::allocate() {
+template <int D>
+void Skeleton<D>::allocate() {
   transfer_.resize();
   const std::size_t n = grid_.slots();
   for (Reals* r : {&v_old_, &v_trial_, &v_new_, &v_map_}) r->assign(n * kVector, 0.0);
@@ -43,7 +47,8 @@ template <int D> void Skeleton<D>::allocate() {
   boundaries_.update(grid_);
 }
 
-template <int D> bool Skeleton<D>::sort(bool force) {
+template <int D>
+bool Skeleton<D>::sort(bool force) {
   if (!force && travelled_ <= kSkin) return false;
   std::vector<int> occupied;
   for (const auto& body : bodies_) {
@@ -57,14 +62,16 @@ template <int D> bool Skeleton<D>::sort(bool force) {
   return changed;
 }
 
-template <int D> void Skeleton<D>::restore(double travelled, double mass_floor, const std::vector<int>& occupied_blocks) {
+template <int D>
+void Skeleton<D>::restore(double travelled, double mass_floor, const std::vector<int>& occupied_blocks) {
   mass_floor_ = mass_floor;
   grid_.activate(occupied_blocks);
   allocate();
   travelled_ = travelled;
 }
 
-template <int D> void Skeleton<D>::scatter(double time) {
+template <int D>
+void Skeleton<D>::scatter(double time) {
   scatter_state(transfer_, options_.affine, sums_);
   applied_load_ = Point<D>{};
   if constexpr (D == 2)
@@ -72,7 +79,8 @@ template <int D> void Skeleton<D>::scatter(double time) {
       const Point<2> f = load.apply(grid_, options_.shape, time, sums_);
       for (int d = 0; d < 2; ++d) applied_load_[d] += f[d];
     }
-  // A node lighter than this share of a full cell's lightest soil carries no force of its own: f / m would be noise.
+  // A node lighter than this share of a full cell's lightest soil carries no force of its own: f / m would be
+  // noise.
   if (mass_floor_ == 0) {
     double density = std::numeric_limits<double>::infinity();
     for (const auto& body : bodies_)
@@ -124,7 +132,8 @@ void Skeleton<D>::predict(double dt, const Point<D>& gravity, double damping, co
   load_norm_ = std::sqrt(load);
 }
 
-template <int D> void Skeleton<D>::constrain(double time, double dt, const Reals* correction, Reals& v, bool record) {
+template <int D>
+void Skeleton<D>::constrain(double time, double dt, const Reals* correction, Reals& v, bool record) {
   v.resize(v_trial_.size());
   parallel_for(grid_.blocks(), [&](int block) {
     const std::size_t first = static_cast<std::size_t>(block) * Grid<D>::kCells * kVector;
@@ -134,10 +143,12 @@ template <int D> void Skeleton<D>::constrain(double time, double dt, const Reals
   boundaries_.apply(time, dt, sums_, v, true, record);
 }
 
-template <int D> void Skeleton<D>::project_volumetric(const Reals& v) {
+template <int D>
+void Skeleton<D>::project_volumetric(const Reals& v) {
   const double h = grid_.spacing();
   constexpr int kCorners = ipow(2, D);
-  // Mass of a corner node whose cells are about a quarter full; lighter corners say the cell is at the surface.
+  // Mass of a corner node whose cells are about a quarter full; lighter corners say the cell is at the
+  // surface.
   const double enough = 0.1 * (mass_floor_ / 1e-9) / kCorners;
   const bool hoop = options_.space == Space::axisymmetric;
   parallel_for(grid_.blocks(), [&](int block) {
@@ -153,7 +164,8 @@ template <int D> void Skeleton<D>::project_volumetric(const Reals& v) {
         for (int d = 0; d < D; ++d) node[d] += k >> d & 1;
         const int s = grid_.slot(node);
         const double r = grid_.origin()[0] + node[0] * h;
-        full = s >= 0 && sums_[static_cast<std::size_t>(s) * kSum] > enough * (hoop ? std::max(r, 0.25 * h) : 1.0);
+        full = s >= 0 &&
+               sums_[static_cast<std::size_t>(s) * kSum] > enough * (hoop ? std::max(r, 0.25 * h) : 1.0);
         if (!full) break;
         const double* u = &v[static_cast<std::size_t>(s) * kVector];
         for (int d = 0; d < D; ++d) {
@@ -168,7 +180,8 @@ template <int D> void Skeleton<D>::project_volumetric(const Reals& v) {
   cell_rate_set_ = true;
 }
 
-template <int D> MoveResult Skeleton<D>::gather(double time, double dt) {
+template <int D>
+MoveResult Skeleton<D>::gather(double time, double dt) {
   MoveOptions o;
   o.dt = dt;
   o.affine = options_.affine;
@@ -201,16 +214,19 @@ template <int D> MoveResult Skeleton<D>::gather(double time, double dt) {
     const int p = r.fastest_slot;
     char text[320];
     std::snprintf(text, sizeof text,
-                  "%s: point %d of body '%s' near (%.6g, %.6g%s) moves at %.4g m/s, %.3g cells in a step of %.4g s, at time %.6g s",
-                  r.finite ? "runaway velocity" : "velocity is not finite", set.id[p], set.name.c_str(), set.position[0][p],
-                  set.position[1][p], D == 3 ? (", " + std::to_string(set.position[D - 1][p])).c_str() : "", r.largest_speed,
+                  "%s: point %d of body '%s' near (%.6g, %.6g%s) moves at %.4g m/s, %.3g cells in a step of "
+                  "%.4g s, at time %.6g s",
+                  r.finite ? "runaway velocity" : "velocity is not finite", set.id[p], set.name.c_str(),
+                  set.position[0][p], set.position[1][p],
+                  D == 3 ? (", " + std::to_string(set.position[D - 1][p])).c_str() : "", r.largest_speed,
                   r.largest_displacement, dt, time);
     throw NumericalError(text);
   }
   return r;
 }
 
-template <int D> double Skeleton<D>::wave_speed(const std::vector<MaterialParameters>& materials) const {
+template <int D>
+double Skeleton<D>::wave_speed(const std::vector<MaterialParameters>& materials) const {
   double fastest = 0;
   for (const auto& body : bodies_) {
     const MaterialParameters& m = materials[body->material];
@@ -218,7 +234,8 @@ template <int D> double Skeleton<D>::wave_speed(const std::vector<MaterialParame
     for (int p = 0; p < body->slots(); ++p) {
       if (body->mass[p] <= 0) continue;
       double mass = body->mass[p];
-      if (!body->pore_water.empty()) mass += body->pore_water[p] * (body->volume[p] - mass / body->density_solid);
+      if (!body->pore_water.empty())
+        mass += body->pore_water[p] * (body->volume[p] - mass / body->density_solid);
       density = std::min(density, mass / body->volume[p]);
     }
     fastest = std::max(fastest, std::sqrt(m.wave_modulus() / density));

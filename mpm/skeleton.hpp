@@ -1,4 +1,5 @@
-// The soil skeleton (and any other deformable body): material points on the background grid with explicit dynamics.
+// The soil skeleton (and any other deformable body): material points on the background grid with explicit
+// dynamics.
 //
 // A step in the order in which a formulation calls it; what pore water adds goes in between:
 //
@@ -8,8 +9,9 @@
 //   constrain()     v = v_trial under the mechanical boundaries
 //   gather()        particle velocities, second mapping (MUSL), strain, stress, motion
 //
-// Stress is updated last from re-mapped momenta (MUSL: Sulsky, Zhou & Schreyer 1995) or from the updated grid velocities
-// (USL). Velocities are blended FLIP/PIC or carried affinely (APIC: Jiang et al. 2015; TPIC: velocity gradient).
+// Stress is updated last from re-mapped momenta (MUSL: Sulsky, Zhou & Schreyer 1995) or from the updated grid
+// velocities (USL). Velocities are blended FLIP/PIC or carried affinely (APIC: Jiang et al. 2015; TPIC:
+// velocity gradient).
 #pragma once
 
 #include <functional>
@@ -32,7 +34,8 @@ struct SkeletonOptions {
   bool cell_average = true;  // volumetric strain of full cells from the cell's divergence (locking cure)
 };
 
-template <int D> class Skeleton {
+template <int D>
+class Skeleton {
  public:
   static constexpr int kSum = Transfer<D>::kSum;
   static constexpr int kVector = Transfer<D>::kVector;
@@ -56,24 +59,27 @@ template <int D> class Skeleton {
   // Laws of all bodies (by ParticleSet::material). plastic = false: elastic response.
   void set_laws(const std::vector<MaterialParameters>& materials, bool plastic);
 
-  // Re-sort if needed, or now if `force`. Returns true when slots were renumbered (Grid::carry moves other fields).
+  // Re-sort if needed, or now if `force`. Returns true when slots were renumbered (Grid::carry moves other
+  // fields).
   bool sort(bool force = false);
   void scatter(double time);
   // Soil in cells by the overlap of particle domains, see mpm::scatter_cells [slots * 4].
   void scatter_cells(Reals& cells) { mpm::scatter_cells(transfer_, cells); }
 
-  // acceleration [slots * 4]: added to f / m + g, or null. damping: local damping alpha (Cundall 1987), componentwise.
+  // acceleration [slots * 4]: added to f / m + g, or null. damping: local damping alpha (Cundall 1987),
+  // componentwise.
   void predict(double dt, const Point<D>& gravity, double damping, const Reals* acceleration);
 
   // v = v_trial + correction [slots * 4] (or null) under the boundaries at `time`.
   void constrain(double time, double dt, const Reals* correction, Reals& v, bool record);
 
-  // Volumetric strain rate (D v)_c / V_c of cells whose corners all carry material into cell_rate(), NaN elsewhere, from
-  // the nodal velocities v; used by the next gather(), which otherwise does this itself with the velocities that its
-  // strains come from. Only where cell_average is chosen.
+  // Volumetric strain rate (D v)_c / V_c of cells whose corners all carry material into cell_rate(), NaN
+  // elsewhere, from the nodal velocities v; used by the next gather(), which otherwise does this itself with
+  // the velocities that its strains come from. Only where cell_average is chosen.
   void project_volumetric(const Reals& v);
 
-  // Particles from v_new. Returns what the step moved; throws NumericalError naming the point when a value is not finite.
+  // Particles from v_new. Returns what the step moved; throws NumericalError naming the point when a value is
+  // not finite.
   MoveResult gather(double time, double dt);
 
   // Nodal fields.
@@ -82,10 +88,12 @@ template <int D> class Skeleton {
   const Reals& v_old() const { return v_old_; }
   Reals& v_new() { return v_new_; }
   const Reals& v_new() const { return v_new_; }
-  double mass_floor() const { return mass_floor_; }  // nodes lighter than this move with their neighbours' momentum only
+  double mass_floor() const {
+    return mass_floor_;
+  }  // nodes lighter than this move with their neighbours' momentum only
 
-  // Out-of-balance force of the last predict(): norm over free components of m a before damping, and of the total load
-  // (gravity and surface loads) [N].
+  // Out-of-balance force of the last predict(): norm over free components of m a before damping, and of the
+  // total load (gravity and surface loads) [N].
   double unbalanced_force() const { return unbalanced_; }
   double load_norm() const { return load_norm_; }
   // Sum of surface loads in the last scatter [N].

@@ -1,12 +1,12 @@
 // Shape functions of a pack of particles: three nodes along each axis, for every kind of shape.
 //
-// Positions are in cells from the grid's origin. The stencil of a particle starts at node base = floor(x - 1/2), so it
-// covers the support of the linear hat, of GIMP (Bardenhagen & Kober 2004) with half sizes up to half a cell, and of the
-// quadratic B-spline (Steffen et al. 2008).
+// Positions are in cells from the grid's origin. The stencil of a particle starts at node base = floor(x -
+// 1/2), so it covers the support of the linear hat, of GIMP (Bardenhagen & Kober 2004) with half sizes up to
+// half a cell, and of the quadratic B-spline (Steffen et al. 2008).
 //
-// At the sides of the grid the value of the missing outer node is extrapolated linearly, v_-1 = 2 v_0 - v_1, which folds
-// its weight into the first two nodes. That keeps partition of unity and linear completeness and makes the shape
-// interpolate at the wall; for the B-spline it is the usual boundary-modified spline.
+// At the sides of the grid the value of the missing outer node is extrapolated linearly, v_-1 = 2 v_0 - v_1,
+// which folds its weight into the first two nodes. That keeps partition of unity and linear completeness and
+// makes the shape interpolate at the wall; for the B-spline it is the usual boundary-modified spline.
 #pragma once
 
 #include "core/simd.hpp"
@@ -49,7 +49,7 @@ POLDER_INLINE void axis_stencil(mpm::ShapeKind shape, Pack x, Pack half_size, in
   s.weight[1] = 1.0 - s.weight[0] - s.weight[2];
   s.slope[1] = -(s.slope[0] + s.slope[2]);
 
-  const Mask low = s.base < 0, high = s.base > nodes - 2;
+  const Mask low = s.base<0, high = s.base> nodes - 2;
   if (any(low | high)) {
     const auto fold = [&](Pack* w) {
       const Pack w0 = w[0], w1 = w[1], w2 = w[2];

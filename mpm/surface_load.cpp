@@ -33,10 +33,12 @@ Point<2> SurfaceLoad::apply(const Grid<2>& grid, ShapeKind shape, double time, R
     const Point<2> middle{0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])};
     const double width = space_ == Space::axisymmetric ? middle[0] : 1;  // one radian, or one metre
     // Material to the left of a -> b: the inward normal times the present length is (-(b-a)_y, (b-a)_x).
-    const Point<2> force{width * (tx * piece_length_ - p * (b[1] - a[1])), width * (ty * piece_length_ + p * (b[0] - a[0]))};
+    const Point<2> force{width * (tx * piece_length_ - p * (b[1] - a[1])),
+                         width * (ty * piece_length_ + p * (b[0] - a[0]))};
     const PointStencil<2> s = point_stencil<2>(grid, load_shape(shape), middle, {});
     for (int n = 0; n < s.count; ++n)
-      for (int d = 0; d < 2; ++d) sums[static_cast<std::size_t>(s.slot[n]) * 8 + 3 + d] += s.weight[n] * force[d];
+      for (int d = 0; d < 2; ++d)
+        sums[static_cast<std::size_t>(s.slot[n]) * 8 + 3 + d] += s.weight[n] * force[d];
     for (int d = 0; d < 2; ++d) total[d] += force[d];
   }
   return total;
@@ -45,8 +47,7 @@ Point<2> SurfaceLoad::apply(const Grid<2>& grid, ShapeKind shape, double time, R
 void SurfaceLoad::move(const Grid<2>& grid, ShapeKind shape, double dt, const Reals& v) {
   for (Point<2>& x : vertices_) {
     const Point<2> u = interpolate<2>(grid, load_shape(shape), x, v, 4);
-    for (int d = 0; d < 2; ++d)
-      x[d] = std::clamp(x[d] + dt * u[d], grid.origin()[d], grid.upper()[d]);
+    for (int d = 0; d < 2; ++d) x[d] = std::clamp(x[d] + dt * u[d], grid.origin()[d], grid.upper()[d]);
   }
 }
 

@@ -1,9 +1,9 @@
 // Tractions and pressures on a material surface (2D: plane strain, axisymmetric).
 //
-// The loaded surface is a polyline whose vertices move with the material. Every piece between two vertices carries its
-// force at its middle to the grid, at the surface itself and not at the centres of the particles below it. A pressure
-// acts along the present normal on the present length (a follower load); a traction acts in its own direction on the
-// initial length.
+// The loaded surface is a polyline whose vertices move with the material. Every piece between two vertices
+// carries its force at its middle to the grid, at the surface itself and not at the centres of the particles
+// below it. A pressure acts along the present normal on the present length (a follower load); a traction acts
+// in its own direction on the initial length.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ class SurfaceLoad {
   SurfaceLoad(std::string name, Point<2> from, Point<2> to, double piece, Space space);
 
   std::string name;
-  std::function<double(double)> pressure;                 // [Pa] at time t, compression positive; may be empty
+  std::function<double(double)> pressure;  // [Pa] at time t, compression positive; may be empty
   std::array<std::function<double(double)>, 2> traction;  // [Pa] at time t; may be empty
 
   // Add the load's nodal forces to sums (stride 8, force lanes). Returns the total force.

@@ -4,18 +4,21 @@
 
 namespace polder::mpm {
 
-template <int D> void scatter_state(Transfer<D>& transfer, AffineKind affine, Reals& sums) {
+template <int D>
+void scatter_state(Transfer<D>& transfer, AffineKind affine, Reals& sums) {
   POLDER_SIMD_CALL(scatter_state, transfer, affine);
   sum_tiles(transfer, Transfer<D>::kSum, sums);
 }
 
-template <int D> void scatter_cells(Transfer<D>& transfer, Reals& cells) {
+template <int D>
+void scatter_cells(Transfer<D>& transfer, Reals& cells) {
   POLDER_SIMD_CALL(scatter_cells, transfer);
   sum_tiles(transfer, Transfer<D>::kCellSum, cells);
 }
 
 template <int D>
-void update_velocities(Transfer<D>& transfer, double flip, const Reals& v_old, const Reals& v_new, Reals* momentum) {
+void update_velocities(Transfer<D>& transfer, double flip, const Reals& v_old, const Reals& v_new,
+                       Reals* momentum) {
   POLDER_SIMD_CALL(update_velocities, transfer, flip, v_old, v_new, momentum != nullptr);
   if (momentum != nullptr) sum_tiles(transfer, Transfer<D>::kVector, *momentum);
 }
@@ -26,7 +29,8 @@ MoveResult update_stress_and_move(Transfer<D>& transfer, const MoveOptions& opti
   return POLDER_SIMD_CALL(update_stress_and_move, transfer, options, v_old, v_move, v_gradient, cell_rate);
 }
 
-template <int D> void sum_tiles(Transfer<D>& transfer, int width, Reals& out) {
+template <int D>
+void sum_tiles(Transfer<D>& transfer, int width, Reals& out) {
   out.resize(static_cast<std::size_t>(transfer.grid->slots()) * width);
   POLDER_SIMD_CALL(sum_tiles, transfer, width, out);
 }
@@ -35,12 +39,12 @@ std::shared_ptr<const void> make_law_handle(int dimension, const MaterialParamet
   return POLDER_SIMD_CALL(make_law_handle, dimension, material, plastic);
 }
 
-#define POLDER_INSTANTIATE(D)                                                                                       \
-  template void scatter_state<D>(Transfer<D>&, AffineKind, Reals&);                                                 \
-  template void scatter_cells<D>(Transfer<D>&, Reals&);                                                             \
-  template void update_velocities<D>(Transfer<D>&, double, const Reals&, const Reals&, Reals*);                     \
-  template MoveResult update_stress_and_move<D>(Transfer<D>&, const MoveOptions&, const Reals*, const Reals&,       \
-                                                const Reals&, const Reals*);                                        \
+#define POLDER_INSTANTIATE(D)                                                                   \
+  template void scatter_state<D>(Transfer<D>&, AffineKind, Reals&);                             \
+  template void scatter_cells<D>(Transfer<D>&, Reals&);                                         \
+  template void update_velocities<D>(Transfer<D>&, double, const Reals&, const Reals&, Reals*); \
+  template MoveResult update_stress_and_move<D>(Transfer<D>&, const MoveOptions&, const Reals*, \
+                                                const Reals&, const Reals&, const Reals*);      \
   template void sum_tiles<D>(Transfer<D>&, int, Reals&);
 POLDER_INSTANTIATE(2)
 POLDER_INSTANTIATE(3)

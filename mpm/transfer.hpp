@@ -1,13 +1,13 @@
 // Transfers between particles and grid: what the particle kernels read and write.
 //
-// Every occupied block of the grid owns a private tile: its nodes, the reach of the stencil and one half cell of skin
-// (kTileSide nodes along each axis, from one node below the block). Particles write only into the tile of their block;
-// then every node sums the tiles of the at most 3^D blocks around it in a fixed order. No atomics, no colours: the bits
-// do not depend on the number of threads.
+// Every occupied block of the grid owns a private tile: its nodes, the reach of the stencil and one half cell
+// of skin (kTileSide nodes along each axis, from one node below the block). Particles write only into the
+// tile of their block; then every node sums the tiles of the at most 3^D blocks around it in a fixed order.
+// No atomics, no colours: the bits do not depend on the number of threads.
 //
-// Node sums are eight numbers a node: 2D {m, px, py, fx, fy, V, -, -}, 3D {m, px, py, pz, fx, fy, fz, V}: mass, momentum,
-// force of stress and loads, volume of saturated soil (0 in dry
-// scenes). Velocities are four numbers a node (padded).
+// Node sums are eight numbers a node: 2D {m, px, py, fx, fy, V, -, -}, 3D {m, px, py, pz, fx, fy, fz, V}:
+// mass, momentum, force of stress and loads, volume of saturated soil (0 in dry scenes). Velocities are four
+// numbers a node (padded).
 #pragma once
 
 #include <memory>
@@ -24,16 +24,18 @@ namespace polder::mpm {
 enum class AffineKind { none, apic, tpic };
 
 // One body as the kernels see it. law points to a polder::simd_*::Law<D> of the running vector level.
-template <int D> struct Body {
+template <int D>
+struct Body {
   ParticleSet<D>* particles = nullptr;
   const void* law = nullptr;
 };
 
-template <int D> struct Transfer {
+template <int D>
+struct Transfer {
   static constexpr int kTileSide = Grid<D>::kSide + 4;
   static constexpr int kTileNodes = ipow(kTileSide, D);
-  static constexpr int kSum = 8;    // numbers a node in `sums`
-  static constexpr int kVector = 4; // numbers a node in a velocity array
+  static constexpr int kSum = 8;                  // numbers a node in `sums`
+  static constexpr int kVector = 4;               // numbers a node in a velocity array
   static constexpr int kVolume = D == 2 ? 5 : 7;  // where V sits in a sum
   static constexpr int kCellSum = 4;
 
@@ -48,17 +50,20 @@ template <int D> struct Transfer {
 };
 
 // Particles to nodes: mass, momentum, internal force and loads, volume into sums [slots * kSum].
-template <int D> void scatter_state(Transfer<D>& transfer, AffineKind affine, Reals& sums);
+template <int D>
+void scatter_state(Transfer<D>& transfer, AffineKind affine, Reals& sums);
 
-// Particles to cells by the overlap of their domains: {V of wet soil, V of its solid, conductivity * V, V of all soil} into cells
-// [slots * kCellSum].
-template <int D> void scatter_cells(Transfer<D>& transfer, Reals& cells);
+// Particles to cells by the overlap of their domains: {V of wet soil, V of its solid, conductivity * V, V of
+// all soil} into cells [slots * kCellSum].
+template <int D>
+void scatter_cells(Transfer<D>& transfer, Reals& cells);
 
 // Particle velocities from nodal ones and, if momentum is not null, their momentum mapped back (MUSL):
 //   v_p = flip (v_p + sum N (v_new - v_old)) + (1 - flip) sum N v_new
 // momentum [slots * kVector].
 template <int D>
-void update_velocities(Transfer<D>& transfer, double flip, const Reals& v_old, const Reals& v_new, Reals* momentum);
+void update_velocities(Transfer<D>& transfer, double flip, const Reals& v_old, const Reals& v_new,
+                       Reals* momentum);
 
 struct MoveOptions {
   double dt = 0;
@@ -81,15 +86,18 @@ MoveResult update_stress_and_move(Transfer<D>& transfer, const MoveOptions& opti
                                   const Reals& v_move, const Reals& v_gradient, const Reals* cell_rate);
 
 // Sum of the private tiles at every node. width = kSum, kVector or kCellSum.
-template <int D> void sum_tiles(Transfer<D>& transfer, int width, Reals& out);
+template <int D>
+void sum_tiles(Transfer<D>& transfer, int width, Reals& out);
 
 // A law of the running vector level; keep the handle as long as kernels use it.
 std::shared_ptr<const void> make_law_handle(int dimension, const MaterialParameters& material, bool plastic);
 
 // Bytes of tiles and sums for each occupied block, for estimates.
-template <int D> std::size_t bytes_per_block() {
+template <int D>
+std::size_t bytes_per_block() {
   using T = Transfer<D>;
-  return sizeof(double) * (T::kTileNodes * T::kSum + Grid<D>::kCells * (T::kSum + 3 * T::kVector + T::kCellSum));
+  return sizeof(double) *
+         (T::kTileNodes * T::kSum + Grid<D>::kCells * (T::kSum + 3 * T::kVector + T::kCellSum));
 }
 
 }  // namespace polder::mpm

@@ -14,16 +14,20 @@ using mpm::MoveOptions;
 using mpm::MoveResult;
 
 // A tile holds two vector fields a and b: 2D {ax, ay, bx, by}, 3D {ax, ay, az, -, bx, by, bz, -}.
-template <int D> inline constexpr int kPair = D == 2 ? 4 : 8;
-template <int D> inline constexpr int kSecond = D == 2 ? 2 : 4;
+template <int D>
+inline constexpr int kPair = D == 2 ? 4 : 8;
+template <int D>
+inline constexpr int kSecond = D == 2 ? 2 : 4;
 
-template <int D> struct Gathered {
-  Pack a[D], b[D];          // sum N a, sum N b
-  Pack gradient[D * D];     // db_i/dx_j [1/s]
-  Pack moment[D * D];       // sum N b_i (x_node - x_p)_j / sum N (x_node - x_p)_j^2 [1/s], affine only
+template <int D>
+struct Gathered {
+  Pack a[D], b[D];       // sum N a, sum N b
+  Pack gradient[D * D];  // db_i/dx_j [1/s]
+  Pack moment[D * D];    // sum N b_i (x_node - x_p)_j / sum N (x_node - x_p)_j^2 [1/s], affine only
 };
 
-template <int D> void load_pair(const Grid<D>& grid, int block, const Reals& a, const Reals& b, double* tile) {
+template <int D>
+void load_pair(const Grid<D>& grid, int block, const Reals& a, const Reals& b, double* tile) {
   constexpr int kVector = mpm::Transfer<D>::kVector;
   if constexpr (D == 2) {
     // Interleave by loading each field with a stride of four and half the width.
@@ -41,8 +45,8 @@ template <int D> void load_pair(const Grid<D>& grid, int block, const Reals& a, 
 enum class Want { values, gradient, moment };
 
 template <int D, Want kWant>
-POLDER_INLINE void gather_pack(const double* tile, const BlockFrame<D>& frame, const TileStencil<D>& s, const Pack* position,
-                               double h, Gathered<D>& out) {
+POLDER_INLINE void gather_pack(const double* tile, const BlockFrame<D>& frame, const TileStencil<D>& s,
+                               const Pack* position, double h, Gathered<D>& out) {
   constexpr int kTile = mpm::Transfer<D>::kTileSide, kW = kPair<D>;
   constexpr bool kGradient = kWant != Want::values, kMoment = kWant == Want::moment;
   alignas(64) double w[D][3][kLanes], g[D][3][kLanes], r[D][3][kLanes];
@@ -100,7 +104,8 @@ POLDER_INLINE void gather_pack(const double* tile, const BlockFrame<D>& frame, c
     }
   if constexpr (kMoment)
     for (int j = 0; j < D; ++j) {
-      // The second moment of the weights is diagonal (tensor product, linear completeness); 0 on an interpolating node.
+      // The second moment of the weights is diagonal (tensor product, linear completeness); 0 on an
+      // interpolating node.
       Pack second = Pack{};
       for (int a = 0; a < 3; ++a) {
         const Pack x = s.distance(frame, j, a, position[j], h);
@@ -112,7 +117,9 @@ POLDER_INLINE void gather_pack(const double* tile, const BlockFrame<D>& frame, c
     }
 }
 
-template <int D> void update_velocities_of(mpm::Transfer<D>& t, double flip, const Reals& v_old, const Reals& v_new, bool map) {
+template <int D>
+void update_velocities_of(mpm::Transfer<D>& t, double flip, const Reals& v_old, const Reals& v_new,
+                          bool map) {
   constexpr int kTileNodes = mpm::Transfer<D>::kTileNodes, kTile = mpm::Transfer<D>::kTileSide;
   const Grid<D>& grid = *t.grid;
   parallel_for(grid.occupied_blocks(), [&](int block) {
@@ -140,7 +147,8 @@ template <int D> void update_velocities_of(mpm::Transfer<D>& t, double flip, con
         const Pack solid = load(&set.mass[p]);
         Pack mass = solid;
         if (!set.pore_water.empty())
-          mass += load(&set.pore_water[p]) * (select(solid > 0, load(&set.volume[p]), Pack{}) - solid * (1 / set.density_solid));
+          mass += load(&set.pore_water[p]) *
+                  (select(solid > 0, load(&set.volume[p]), Pack{}) - solid * (1 / set.density_solid));
         Pack f[4] = {};
         for (int d = 0; d < D; ++d) f[d] = mass * v[d];
         Reg<4> momentum[kLanes];
@@ -161,14 +169,16 @@ template <int D> void update_velocities_of(mpm::Transfer<D>& t, double flip, con
   });
 }
 
-// Replace the volumetric strain of a pack by that of its cell (NaN: keep), shared by the components that deform.
+// Replace the volumetric strain of a pack by that of its cell (NaN: keep), shared by the components that
+// deform.
 template <int D>
-POLDER_INLINE void project_volumetric(const BlockFrame<D>& frame, const double* rate, const Pack* position, Mask real, double dt,
-                                      bool hoop, Pack* strain, Pack* gradient) {
+POLDER_INLINE void project_volumetric(const BlockFrame<D>& frame, const double* rate, const Pack* position,
+                                      Mask real, double dt, bool hoop, Pack* strain, Pack* gradient) {
   constexpr int kTile = mpm::Transfer<D>::kTileSide;
   Mask index = Mask{};
   for (int d = D - 1; d >= 0; --d)
-    index = index * kTile + (floor_to_int((position[d] - frame.origin[d]) * frame.inverse_h) - frame.first_node[d]);
+    index = index * kTile +
+            (floor_to_int((position[d] - frame.origin[d]) * frame.inverse_h) - frame.first_node[d]);
   Pack cell_rate;
   for (int l = 0; l < kLanes; ++l) cell_rate[l] = rate[index[l]];
   const int n = D == 3 || hoop ? 3 : 2;
@@ -200,8 +210,9 @@ POLDER_INLINE void strain_of(const Pack* gradient, bool hoop, Pack hoop_strain, 
 
 // Motion, volume and domain of a pack.
 template <int D>
-POLDER_INLINE void move_pack(ParticleSet<D>& set, int p, Mask real, const Pack* x, const Pack* half_size, const Pack* carried,
-                             const Pack* strain, bool hoop, double dt, double h, int body, BlockResult& result) {
+POLDER_INLINE void move_pack(ParticleSet<D>& set, int p, Mask real, const Pack* x, const Pack* half_size,
+                             const Pack* carried, const Pack* strain, bool hoop, double dt, double h,
+                             int body, BlockResult& result) {
   Pack trace = strain[0] + strain[1];
   if (D == 3 || hoop) trace += strain[2];
   store(&set.volume[p], load(&set.volume[p]) * (1.0 + trace));
@@ -217,13 +228,15 @@ POLDER_INLINE void move_pack(ParticleSet<D>& set, int p, Mask real, const Pack* 
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!real[lane]) continue;
     if (!(fast[lane] < 1e12)) result.finite = false;
-    if (fast[lane] > result.fast || !(fast[lane] < 1e12)) result.fast = fast[lane], result.body = body, result.slot = p + lane;
+    if (fast[lane] > result.fast || !(fast[lane] < 1e12))
+      result.fast = fast[lane], result.body = body, result.slot = p + lane;
     result.far = std::max(result.far, far[lane]);
   }
 }
 
 // What one block of one body needs in move_block.
-template <int D> struct MoveFrame {
+template <int D>
+struct MoveFrame {
   mpm::Transfer<D>& transfer;
   const MoveOptions& options;
   const BlockFrame<D>& block;
@@ -234,8 +247,8 @@ template <int D> struct MoveFrame {
 };
 
 template <int D, Want kWant>
-POLDER_INLINE void gather_strain(const MoveFrame<D>& m, ParticleSet<D>& set, int p, int body, int u, StressBatch<D>& batch,
-                                 BlockResult& result) {
+POLDER_INLINE void gather_strain(const MoveFrame<D>& m, ParticleSet<D>& set, int p, int body, int u,
+                                 StressBatch<D>& batch, BlockResult& result) {
   const MoveOptions& o = m.options;
   const double dt = o.dt;
   const Mask real = load(&set.mass[p]) > 0;
@@ -251,7 +264,8 @@ POLDER_INLINE void gather_strain(const MoveFrame<D>& m, ParticleSet<D>& set, int
   for (int d = 0; d < D; ++d) {
     carried[d] = m.usl ? q.b[d] : q.a[d];
     if (m.usl)
-      store(&set.velocity[d][p], o.flip * (load(&set.velocity[d][p]) + (q.b[d] - q.a[d])) + (1 - o.flip) * q.b[d]);
+      store(&set.velocity[d][p],
+            o.flip * (load(&set.velocity[d][p]) + (q.b[d] - q.a[d])) + (1 - o.flip) * q.b[d]);
     else if (o.affine != AffineKind::none)
       store(&set.velocity[d][p], carried[d]);
   }
@@ -262,7 +276,8 @@ POLDER_INLINE void gather_strain(const MoveFrame<D>& m, ParticleSet<D>& set, int
   // Padding points feel nothing, so that their state stays harmless.
   for (int k = 0; k < D * D; ++k) batch.gradient[u][k] = select(real, dt * q.gradient[k], Pack{});
   strain_of<D>(batch.gradient[u], m.hoop, select(real, dt * q.b[0] / x[0], Pack{}), batch.strain[u]);
-  if (m.rate != nullptr) project_volumetric<D>(m.block, m.rate, x, real, dt, m.hoop, batch.strain[u], batch.gradient[u]);
+  if (m.rate != nullptr)
+    project_volumetric<D>(m.block, m.rate, x, real, dt, m.hoop, batch.strain[u], batch.gradient[u]);
 
   for (int k = 0; k < StressBatch<D>::kStress; ++k) batch.stress[u][k] = load(&set.stress[k][p]);
   for (std::size_t k = 0; k < set.state.size(); ++k) batch.state[u][k] = load(&set.state[k][p]);
@@ -270,14 +285,16 @@ POLDER_INLINE void gather_strain(const MoveFrame<D>& m, ParticleSet<D>& set, int
   move_pack<D>(set, p, real, x, l, carried, batch.strain[u], m.hoop, dt, m.h, body, result);
 }
 
-template <int D, Want kWant> void move_body(const MoveFrame<D>& m, int block, int body, BlockResult& result) {
+template <int D, Want kWant>
+void move_body(const MoveFrame<D>& m, int block, int body, BlockResult& result) {
   ParticleSet<D>& set = *m.transfer.bodies[body].particles;
   const auto* law = static_cast<const Law<D>*>(m.transfer.bodies[body].law);
   const auto range = set.ranges[block];
   for (int first = range.first; first < range.first + range.count; first += kBatchPacks * kLanes) {
     StressBatch<D> batch;
     batch.packs = std::min(kBatchPacks, (range.first + range.count - first) / kLanes);
-    for (int u = 0; u < batch.packs; ++u) gather_strain<D, kWant>(m, set, first + u * kLanes, body, u, batch, result);
+    for (int u = 0; u < batch.packs; ++u)
+      gather_strain<D, kWant>(m, set, first + u * kLanes, body, u, batch, result);
     law->update(batch);
     for (int u = 0; u < batch.packs; ++u) {
       const int p = first + u * kLanes;
@@ -296,10 +313,17 @@ BlockResult move_block(mpm::Transfer<D>& t, const MoveOptions& o, const Reals* v
   load_pair<D>(*t.grid, block, usl ? *v_old : v_move, v_gradient, velocities);
   if (cell_rate != nullptr) load_tile<D, 1, 1>(*t.grid, block, cell_rate->data(), rate);
   const BlockFrame<D> frame(*t.grid, block);
-  const MoveFrame<D> m{t, o, frame, velocities, cell_rate != nullptr ? rate : nullptr, t.space == Space::axisymmetric, usl,
+  const MoveFrame<D> m{t,
+                       o,
+                       frame,
+                       velocities,
+                       cell_rate != nullptr ? rate : nullptr,
+                       t.space == Space::axisymmetric,
+                       usl,
                        t.grid->spacing()};
   BlockResult result;
-  for (std::size_t body = 0; body < t.bodies.size(); ++body) move_body<D, kWant>(m, block, static_cast<int>(body), result);
+  for (std::size_t body = 0; body < t.bodies.size(); ++body)
+    move_body<D, kWant>(m, block, static_cast<int>(body), result);
   return result;
 }
 
@@ -324,20 +348,25 @@ MoveResult move_of(mpm::Transfer<D>& t, const MoveOptions& o, const Reals* v_old
 template <int D>
 MoveResult move_any(mpm::Transfer<D>& t, const MoveOptions& o, const Reals* v_old, const Reals& v_move,
                     const Reals& v_gradient, const Reals* cell_rate) {
-  if (o.affine == AffineKind::apic) return move_of<D, Want::moment>(t, o, v_old, v_move, v_gradient, cell_rate);
+  if (o.affine == AffineKind::apic)
+    return move_of<D, Want::moment>(t, o, v_old, v_move, v_gradient, cell_rate);
   return move_of<D, Want::gradient>(t, o, v_old, v_move, v_gradient, cell_rate);
 }
 
 }  // namespace
 
-void update_velocities(mpm::Transfer<2>& t, double f, const Reals& a, const Reals& b, bool m) { update_velocities_of(t, f, a, b, m); }
-void update_velocities(mpm::Transfer<3>& t, double f, const Reals& a, const Reals& b, bool m) { update_velocities_of(t, f, a, b, m); }
-MoveResult update_stress_and_move(mpm::Transfer<2>& t, const MoveOptions& o, const Reals* a, const Reals& b, const Reals& c,
-                                  const Reals* r) {
+void update_velocities(mpm::Transfer<2>& t, double f, const Reals& a, const Reals& b, bool m) {
+  update_velocities_of(t, f, a, b, m);
+}
+void update_velocities(mpm::Transfer<3>& t, double f, const Reals& a, const Reals& b, bool m) {
+  update_velocities_of(t, f, a, b, m);
+}
+MoveResult update_stress_and_move(mpm::Transfer<2>& t, const MoveOptions& o, const Reals* a, const Reals& b,
+                                  const Reals& c, const Reals* r) {
   return move_any(t, o, a, b, c, r);
 }
-MoveResult update_stress_and_move(mpm::Transfer<3>& t, const MoveOptions& o, const Reals* a, const Reals& b, const Reals& c,
-                                  const Reals* r) {
+MoveResult update_stress_and_move(mpm::Transfer<3>& t, const MoveOptions& o, const Reals* a, const Reals& b,
+                                  const Reals& c, const Reals* r) {
   return move_any(t, o, a, b, c, r);
 }
 

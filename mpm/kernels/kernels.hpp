@@ -5,12 +5,12 @@
 
 #include "mpm/transfer.hpp"
 
-#define POLDER_DECLARE_KERNELS(D)                                                                                    \
-  POLDER_SIMD_DECLARE(void, scatter_state, mpm::Transfer<D>&, mpm::AffineKind)                                      \
-  POLDER_SIMD_DECLARE(void, scatter_cells, mpm::Transfer<D>&)                                                       \
-  POLDER_SIMD_DECLARE(void, sum_tiles, mpm::Transfer<D>&, int, Reals&)                                              \
-  POLDER_SIMD_DECLARE(void, update_velocities, mpm::Transfer<D>&, double, const Reals&, const Reals&, bool)         \
-  POLDER_SIMD_DECLARE(mpm::MoveResult, update_stress_and_move, mpm::Transfer<D>&, const mpm::MoveOptions&,          \
+#define POLDER_DECLARE_KERNELS(D)                                                                           \
+  POLDER_SIMD_DECLARE(void, scatter_state, mpm::Transfer<D>&, mpm::AffineKind)                              \
+  POLDER_SIMD_DECLARE(void, scatter_cells, mpm::Transfer<D>&)                                               \
+  POLDER_SIMD_DECLARE(void, sum_tiles, mpm::Transfer<D>&, int, Reals&)                                      \
+  POLDER_SIMD_DECLARE(void, update_velocities, mpm::Transfer<D>&, double, const Reals&, const Reals&, bool) \
+  POLDER_SIMD_DECLARE(mpm::MoveResult, update_stress_and_move, mpm::Transfer<D>&, const mpm::MoveOptions&,  \
                       const Reals*, const Reals&, const Reals&, const Reals*)
 
 namespace polder {

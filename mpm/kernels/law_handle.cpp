@@ -4,7 +4,8 @@
 
 namespace polder::POLDER_SIMD_NAMESPACE {
 
-std::shared_ptr<const void> make_law_handle(int dimension, const mpm::MaterialParameters& material, bool plastic) {
+std::shared_ptr<const void> make_law_handle(int dimension, const mpm::MaterialParameters& material,
+                                            bool plastic) {
   if (dimension == 2) return std::shared_ptr<const Law<2>>(make_law<2>(material, plastic));
   return std::shared_ptr<const Law<3>>(make_law<3>(material, plastic));
 }

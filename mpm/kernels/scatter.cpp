@@ -1,9 +1,11 @@
 // Particles to nodes and cells.
 //
 // With the stencil's weights N_i = w0 w1 (w2), node i gets
-//   m_i += N m            p_i += N m (v + C (x_i - x_p))            f_i += N f_ext - V sigma grad N             V_i += N V
-// The tensor product is summed axis by axis: what multiplies a plain weight and what multiplies a slope along the last
-// axis are carried in two registers, so a node costs two or three fused multiply-adds of a whole register.
+//   m_i += N m            p_i += N m (v + C (x_i - x_p))            f_i += N f_ext - V sigma grad N V_i += N
+//   V
+// The tensor product is summed axis by axis: what multiplies a plain weight and what multiplies a slope along
+// the last axis are carried in two registers, so a node costs two or three fused multiply-adds of a whole
+// register.
 #include <algorithm>
 
 #include "core/threads.hpp"
@@ -15,9 +17,10 @@ namespace {
 using mpm::AffineKind;
 
 // Fields of one pack that go to the nodes, transposed: one register for each particle.
-template <int D, bool kAffine> struct ScatterFields {
-  Reg<8> value[kLanes];        // m, m v, f_ext, V
-  Reg<8> stress[D][kLanes];    // -V sigma e_d in the force lanes
+template <int D, bool kAffine>
+struct ScatterFields {
+  Reg<8> value[kLanes];                    // m, m v, f_ext, V
+  Reg<8> stress[D][kLanes];                // -V sigma e_d in the force lanes
   Reg<8> affine[kAffine ? D : 1][kLanes];  // m C e_d in the momentum lanes
 };
 
@@ -65,11 +68,14 @@ POLDER_INLINE void load_fields(const mpm::Transfer<D>& transfer, const ParticleS
     }
 }
 
-POLDER_INLINE void add(double* node, const Reg<8>& value) { (Reg<8>::load(node) + value).store(node); }
+POLDER_INLINE void add(double* node, const Reg<8>& value) {
+  (Reg<8>::load(node) + value).store(node);
+}
 
 template <int D, bool kAffine>
-POLDER_INLINE void scatter_pack(const TileStencil<D>& s, const double (&w)[D][3][kLanes], const double (&g)[D][3][kLanes],
-                                const double (&r)[D][3][kLanes], const ScatterFields<D, kAffine>& f, double* tile) {
+POLDER_INLINE void scatter_pack(const TileStencil<D>& s, const double (&w)[D][3][kLanes],
+                                const double (&g)[D][3][kLanes], const double (&r)[D][3][kLanes],
+                                const ScatterFields<D, kAffine>& f, double* tile) {
   constexpr int kTile = mpm::Transfer<D>::kTileSide;
   for (int l = 0; l < kLanes; ++l) {
     double* first = tile + s.start[l] * 8;
@@ -110,7 +116,8 @@ POLDER_INLINE void scatter_pack(const TileStencil<D>& s, const double (&w)[D][3]
   }
 }
 
-template <int D, bool kAffine> void scatter_blocks(mpm::Transfer<D>& transfer) {
+template <int D, bool kAffine>
+void scatter_blocks(mpm::Transfer<D>& transfer) {
   constexpr int kTileNodes = mpm::Transfer<D>::kTileNodes;
   const Grid<D>& grid = *transfer.grid;
   const double h = grid.spacing();
@@ -147,7 +154,8 @@ POLDER_INLINE void overlap(Pack x, Pack l, Mask& cell, Pack& lower) {
   lower = clamp((to_real(cell) + 1.0 - (x - l)) / (2.0 * l), 0.0, 1.0);
 }
 
-template <int D> void scatter_cells_of(mpm::Transfer<D>& transfer) {
+template <int D>
+void scatter_cells_of(mpm::Transfer<D>& transfer) {
   constexpr int kTileNodes = mpm::Transfer<D>::kTileNodes, kTile = mpm::Transfer<D>::kTileSide;
   const Grid<D>& grid = *transfer.grid;
   parallel_for(grid.occupied_blocks(), [&](int block) {
@@ -161,8 +169,8 @@ template <int D> void scatter_cells_of(mpm::Transfer<D>& transfer) {
       for (int p = range.first; p < range.first + range.count; p += kLanes) {
         const Pack solid = load(&set.mass[p]), volume = select(solid > 0, load(&set.volume[p]), Pack{});
         const Pack wet = load(&set.wet[p]) * volume;
-        Pack fields[4] = {wet, load(&set.wet[p]) * solid * (1 / set.density_solid), wet * load(&set.conductivity[p]),
-                          volume};
+        Pack fields[4] = {wet, load(&set.wet[p]) * solid * (1 / set.density_solid),
+                          wet * load(&set.conductivity[p]), volume};
         Reg<4> node[kLanes];
         to_nodes<4>(fields, node);
         Mask start = Mask{};
@@ -198,14 +206,22 @@ template <int D> void scatter_cells_of(mpm::Transfer<D>& transfer) {
 }  // namespace
 
 void scatter_state(mpm::Transfer<2>& t, AffineKind a) {
-  if (a == AffineKind::none) scatter_blocks<2, false>(t);
-  else scatter_blocks<2, true>(t);
+  if (a == AffineKind::none)
+    scatter_blocks<2, false>(t);
+  else
+    scatter_blocks<2, true>(t);
 }
 void scatter_state(mpm::Transfer<3>& t, AffineKind a) {
-  if (a == AffineKind::none) scatter_blocks<3, false>(t);
-  else scatter_blocks<3, true>(t);
+  if (a == AffineKind::none)
+    scatter_blocks<3, false>(t);
+  else
+    scatter_blocks<3, true>(t);
 }
-void scatter_cells(mpm::Transfer<2>& t) { scatter_cells_of(t); }
-void scatter_cells(mpm::Transfer<3>& t) { scatter_cells_of(t); }
+void scatter_cells(mpm::Transfer<2>& t) {
+  scatter_cells_of(t);
+}
+void scatter_cells(mpm::Transfer<3>& t) {
+  scatter_cells_of(t);
+}
 
 }  // namespace polder::POLDER_SIMD_NAMESPACE

@@ -5,7 +5,8 @@
 namespace polder::POLDER_SIMD_NAMESPACE {
 namespace {
 
-template <int D, int kWidth> void sum_width(mpm::Transfer<D>& transfer, Reals& out) {
+template <int D, int kWidth>
+void sum_width(mpm::Transfer<D>& transfer, Reals& out) {
   constexpr int kSide = Grid<D>::kSide, kTile = mpm::Transfer<D>::kTileSide;
   const Grid<D>& grid = *transfer.grid;
   parallel_for(grid.blocks(), [&](int block) {
@@ -22,10 +23,13 @@ template <int D, int kWidth> void sum_width(mpm::Transfer<D>& transfer, Reals& o
         hi[d] = shift[d] < 0 ? 3 : kSide;
         from[d] = 1 - shift[d] * kSide;
       }
-      const double* tile = transfer.tiles.data() + static_cast<std::size_t>(n) * mpm::Transfer<D>::kTileNodes * kWidth;
+      const double* tile =
+          transfer.tiles.data() + static_cast<std::size_t>(n) * mpm::Transfer<D>::kTileNodes * kWidth;
       for (int z = lo[2]; z < hi[2]; ++z)
         for (int y = lo[1]; y < hi[1]; ++y) {
-          const double* in = tile + (((D == 3 ? (z + from[2]) * kTile : 0) + y + from[1]) * kTile + lo[0] + from[0]) * kWidth;
+          const double* in =
+              tile +
+              (((D == 3 ? (z + from[2]) * kTile : 0) + y + from[1]) * kTile + lo[0] + from[0]) * kWidth;
           double* to = sum + (((D == 3 ? z * kSide : 0) + y) * kSide + lo[0]) * kWidth;
           for (int x = 0; x < hi[0] - lo[0]; ++x)
             (Reg<kWidth>::load(to + x * kWidth) + Reg<kWidth>::load(in + x * kWidth)).store(to + x * kWidth);
@@ -34,14 +38,21 @@ template <int D, int kWidth> void sum_width(mpm::Transfer<D>& transfer, Reals& o
   });
 }
 
-template <int D> void sum_any(mpm::Transfer<D>& transfer, int width, Reals& out) {
-  if (width == 8) sum_width<D, 8>(transfer, out);
-  else sum_width<D, 4>(transfer, out);
+template <int D>
+void sum_any(mpm::Transfer<D>& transfer, int width, Reals& out) {
+  if (width == 8)
+    sum_width<D, 8>(transfer, out);
+  else
+    sum_width<D, 4>(transfer, out);
 }
 
 }  // namespace
 
-void sum_tiles(mpm::Transfer<2>& transfer, int width, Reals& out) { sum_any(transfer, width, out); }
-void sum_tiles(mpm::Transfer<3>& transfer, int width, Reals& out) { sum_any(transfer, width, out); }
+void sum_tiles(mpm::Transfer<2>& transfer, int width, Reals& out) {
+  sum_any(transfer, width, out);
+}
+void sum_tiles(mpm::Transfer<3>& transfer, int width, Reals& out) {
+  sum_any(transfer, width, out);
+}
 
 }  // namespace polder::POLDER_SIMD_NAMESPACE

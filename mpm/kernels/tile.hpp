@@ -10,12 +10,13 @@
 namespace polder::POLDER_SIMD_NAMESPACE {
 
 // Geometry of one block as its kernels need it.
-template <int D> struct BlockFrame {
-  double origin[D];     // of the grid [m]
-  double inverse_h;     // [1/m]
-  int first_node[D];    // tile node 0, in grid nodes
-  int last_node[D];     // of the grid
-  int first, count;     // particle range
+template <int D>
+struct BlockFrame {
+  double origin[D];   // of the grid [m]
+  double inverse_h;   // [1/m]
+  int first_node[D];  // tile node 0, in grid nodes
+  int last_node[D];   // of the grid
+  int first, count;   // particle range
 
   BlockFrame(const Grid<D>& grid, int block) : inverse_h(1 / grid.spacing()) {
     const Index<D> o = grid.block_origin(block);
@@ -24,11 +25,13 @@ template <int D> struct BlockFrame {
   }
 };
 
-template <int D> struct TileStencil {
+template <int D>
+struct TileStencil {
   AxisStencil axis[D];
   Mask start;  // tile index of the first node of the stencil
 
-  POLDER_INLINE void set(const BlockFrame<D>& frame, mpm::ShapeKind shape, const Pack* position, const Pack* half_size) {
+  POLDER_INLINE void set(const BlockFrame<D>& frame, mpm::ShapeKind shape, const Pack* position,
+                         const Pack* half_size) {
     constexpr int kSide = mpm::Transfer<D>::kTileSide;
     start = Mask{};
     for (int d = D - 1; d >= 0; --d) {
@@ -43,8 +46,8 @@ template <int D> struct TileStencil {
   }
 };
 
-// Copy a node field with kWidth numbers a node (of which `stride` are stored side by side in the tile at `offset`) from
-// the grid into a tile. Nodes that are not stored read as zero.
+// Copy a node field with kWidth numbers a node (of which `stride` are stored side by side in the tile at
+// `offset`) from the grid into a tile. Nodes that are not stored read as zero.
 template <int D, int kWidth, int kStride>
 void load_tile(const Grid<D>& grid, int block, const double* field, double* tile) {
   constexpr int kSide = Grid<D>::kSide, kTile = mpm::Transfer<D>::kTileSide;
@@ -53,18 +56,22 @@ void load_tile(const Grid<D>& grid, int block, const double* field, double* tile
     const int n = neighbours[k];
     const int shift[3] = {k % 3 - 1, k / 3 % 3 - 1, D == 3 ? k / 9 - 1 : 0};
     int lo[3] = {0, 0, 0}, hi[3] = {1, 1, 1}, to[3] = {0, 0, 0};
-    for (int d = 0; d < D; ++d) {  // part of the neighbour that the tile covers: nodes [-1, kSide + 3) of this block
+    for (int d = 0; d < D;
+         ++d) {  // part of the neighbour that the tile covers: nodes [-1, kSide + 3) of this block
       lo[d] = shift[d] < 0 ? kSide - 1 : 0;
       hi[d] = shift[d] > 0 ? 3 : kSide;
       to[d] = shift[d] * kSide + 1;
     }
     for (int z = lo[2]; z < hi[2]; ++z)
       for (int y = lo[1]; y < hi[1]; ++y) {
-        double* out = tile + (((D == 3 ? (z + to[2]) * kTile : 0) + y + to[1]) * kTile + lo[0] + to[0]) * kStride;
+        double* out =
+            tile + (((D == 3 ? (z + to[2]) * kTile : 0) + y + to[1]) * kTile + lo[0] + to[0]) * kStride;
         const double* in = field + (static_cast<std::size_t>(n < 0 ? 0 : n) * Grid<D>::kCells +
-                                    ((D == 3 ? z * kSide : 0) + y) * kSide + lo[0]) * kWidth;
+                                    ((D == 3 ? z * kSide : 0) + y) * kSide + lo[0]) *
+                                       kWidth;
         for (int x = 0; x < hi[0] - lo[0]; ++x)
-          for (int c = 0; c < kWidth && c < kStride; ++c) out[x * kStride + c] = n < 0 ? 0.0 : in[x * kWidth + c];
+          for (int c = 0; c < kWidth && c < kStride; ++c)
+            out[x * kStride + c] = n < 0 ? 0.0 : in[x * kWidth + c];
       }
   }
 }
