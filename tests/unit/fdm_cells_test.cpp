@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.hpp"
-#include "fdm_scene.hpp"
+#include "tests/unit/fdm_scene.hpp"
 
 using namespace polder;
 using namespace polder::fdm;

@@ -2,7 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/threads.hpp"
-#include "fdm_scene.hpp"
+#include "tests/unit/fdm_scene.hpp"
 
 using namespace polder;
 using namespace polder::fdm;

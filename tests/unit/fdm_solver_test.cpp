@@ -3,7 +3,7 @@
 #include "core/error.hpp"
 #include "fdm/direct_solver.hpp"
 #include "fdm/multigrid.hpp"
-#include "fdm_scene.hpp"
+#include "tests/unit/fdm_scene.hpp"
 
 using namespace polder;
 using namespace polder::fdm;

@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "fdm_scene.hpp"
+#include "tests/unit/fdm_scene.hpp"
 
 using namespace polder;
 using namespace polder::fdm;

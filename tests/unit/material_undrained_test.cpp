@@ -7,7 +7,7 @@
 #include <random>
 
 #include "mpm/material/element_path.hpp"
-#include "reference_csv.hpp"
+#include "tests/unit/reference_csv.hpp"
 
 using namespace polder::mpm;
 
