@@ -1,5 +1,5 @@
-// A program outside Polder that uses its background grid: stores the blocks under a levee's cross-section and moves a
-// cell field along when the levee slides. Lengths in metres.
+// A program outside Polder that uses its background grid: stores the blocks under a levee's cross-section and
+// moves a cell field along when the levee slides. Lengths in metres.
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -50,14 +50,16 @@ int main() {
   polder::Reals fill(grid.slots(), 0.0);
   for (const auto& cell : cells) fill[grid.slot(cell)] = 1.0;
   const double before = area(grid, fill);
-  std::printf("vector level %s, %d threads\n", polder::to_string(polder::simd_level()).c_str(), polder::threads());
-  std::printf("%d blocks hold soil, %d stored, %d slots; area %.2f m2\n", grid.occupied_blocks(), grid.blocks(),
-              grid.slots(), before);
+  std::printf("vector level %s, %d threads\n", polder::to_string(polder::simd_level()).c_str(),
+              polder::threads());
+  std::printf("%d blocks hold soil, %d stored, %d slots; area %.2f m2\n", grid.occupied_blocks(),
+              grid.blocks(), grid.slots(), before);
 
   // One block to the right: the numbering changes; what the levee covers before and after keeps its values.
   const bool renumbered = activate(grid, levee_cells(grid, 0.8));
   grid.carry(fill);
-  std::printf("moved by 0.8 m: renumbered %s, area carried %.2f m2\n", renumbered ? "yes" : "no", area(grid, fill));
+  std::printf("moved by 0.8 m: renumbered %s, area carried %.2f m2\n", renumbered ? "yes" : "no",
+              area(grid, fill));
 
   const bool exact = std::abs(before - 18.0) < 1e-9 && std::abs(area(grid, fill) - before) < 1e-9;
   return renumbered && exact ? 0 : 1;
