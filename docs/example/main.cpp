@@ -1,66 +1,131 @@
-// A program outside Polder that uses its background grid: stores the blocks under a levee's cross-section and
-// moves a cell field along when the levee slides. Lengths in metres.
+// A program outside Polder: fills a scene by hand, steps it and asks for results on the way.
+//
+// Terzaghi's consolidation: a saturated elastic column of height H, drained at the top, carries its own
+// weight in equilibrium when the load q arrives. Excess pore pressure at the base and settlement are compared
+// with the series of Terzaghi (1923) in dimensionless time T = c_v t / H^2. SI units, pore pressure positive
+// in compression.
 #include <cmath>
 #include <cstdio>
-#include <vector>
+#include <numbers>
 
-#include "core/grid.hpp"
-#include "core/simd_level.hpp"
-#include "core/threads.hpp"
+#include "core/error.hpp"
+#include "coupling/simulation.hpp"
 
 namespace {
 
-// Crest 3 m wide and 3 m high, slope 1:2, shifted by `shift` to the right.
-bool inside_levee(double x, double y, double shift) {
-  x -= shift;
-  return x >= 0 && y >= 0 && y <= 3 && x <= 3 + 2 * (3 - y);
+using polder::Space;
+using polder::coupling::Body;
+using polder::coupling::Boundary;
+using polder::coupling::InitialStress;
+using polder::coupling::Scene;
+using polder::coupling::Stage;
+
+constexpr double kHeight = 1.0;         // H [m]
+constexpr double kLoad = 1e4;           // q [Pa]
+constexpr double kConductivity = 1e-3;  // k [m/s]
+
+polder::mpm::MaterialParameters sand() {
+  polder::mpm::MaterialParameters m;
+  m.name = "sand";
+  m.density_solid = 2650;
+  m.porosity = 0.4;
+  m.young = 1e7;
+  m.poisson = 0.2;
+  m.hydraulic_conductivity = kConductivity;
+  return m;
 }
 
-// Cells whose centre lies in the levee.
-std::vector<polder::Index<2>> levee_cells(const polder::Grid<2>& grid, double shift) {
-  std::vector<polder::Index<2>> cells;
-  const double half = 0.5 * grid.spacing();
-  for (int j = 0; j < grid.cells()[1]; ++j)
-    for (int i = 0; i < grid.cells()[0]; ++i) {
-      const polder::Point<2> corner = grid.position({i, j});
-      if (inside_levee(corner[0] + half, corner[1] + half, shift)) cells.push_back({i, j});
-    }
-  return cells;
+Boundary on_side(const char* name, Boundary::Kind kind, int side) {
+  Boundary b;
+  b.name = name;
+  b.kind = kind;
+  b.side = side;
+  return b;
 }
 
-bool activate(polder::Grid<2>& grid, const std::vector<polder::Index<2>>& cells) {
-  std::vector<int> blocks;
-  for (const auto& cell : cells) blocks.push_back(grid.block_number(cell));
-  return grid.activate(blocks);
+Scene column() {
+  Scene scene;
+  scene.title = "Terzaghi's column";
+  scene.formulation = "one-layer";
+  scene.grid = {Space::plane_strain, {0, 0, 0}, {0.2, 1.2, 0}, 0.1, polder::mpm::ShapeKind::gimp};
+  scene.materials.push_back(sand());
+
+  Body body;
+  body.name = "column";
+  body.box = {{{0, 0, 0}, {0.2, kHeight, 0}}};
+  body.stress.kind = InitialStress::Kind::k0;
+  body.stress.k0 = {0.25};  // nu / (1 - nu): what an elastic column has under its own weight
+  scene.bodies.push_back(body);
+
+  scene.boundaries.push_back(on_side("left", Boundary::Kind::roller, 0));
+  scene.boundaries.push_back(on_side("right", Boundary::Kind::roller, 1));
+  scene.boundaries.push_back(on_side("base", Boundary::Kind::fixed, 2));
+  Boundary load;
+  load.name = "load";
+  load.kind = Boundary::Kind::pressure;
+  load.segment = {{{0.2, kHeight, 0}, {0, kHeight, 0}}};  // the soil lies to the left
+  load.pressure = {{0.0}, {kLoad}};
+  scene.boundaries.push_back(load);
+
+  Stage stage;
+  stage.name = "consolidation";
+  stage.duration = 0.5;
+  scene.stages.push_back(stage);
+  return scene;
 }
 
-double area(const polder::Grid<2>& grid, const polder::Reals& fill) {
+// Excess pressure over q at the depth z below the drained top, and the degree of settlement.
+double excess_pressure(double z, double time_factor) {
   double sum = 0;
-  for (const double f : fill) sum += f;
-  return sum * grid.spacing() * grid.spacing();
+  for (int n = 0; n < 200; ++n) {
+    const double m = std::numbers::pi * (2 * n + 1) / 2;
+    sum += 2 / m * std::sin(m * z / kHeight) * std::exp(-m * m * time_factor);
+  }
+  return sum;
+}
+double settlement_degree(double time_factor) {
+  double rest = 0;
+  for (int n = 0; n < 200; ++n) {
+    const double m = std::numbers::pi * (2 * n + 1) / 2;
+    rest += 2 / (m * m) * std::exp(-m * m * time_factor);
+  }
+  return 1 - rest;
 }
 
 }  // namespace
 
-int main() {
-  polder::Grid<2> grid({0.0, 0.0}, {120, 40}, 0.1);
-  const auto cells = levee_cells(grid, 0.0);
-  activate(grid, cells);
+int main() try {
+  const Scene scene = column();
+  const polder::mpm::MaterialParameters& soil = scene.materials[0];
+  const double unit_weight = scene.water.density * 9.81;
+  const double consolidation = kConductivity * soil.wave_modulus() / unit_weight;  // c_v [m2/s]
 
-  polder::Reals fill(grid.slots(), 0.0);
-  for (const auto& cell : cells) fill[grid.slot(cell)] = 1.0;
-  const double before = area(grid, fill);
-  std::printf("vector level %s, %d threads\n", polder::to_string(polder::simd_level()).c_str(),
-              polder::threads());
-  std::printf("%d blocks hold soil, %d stored, %d slots; area %.2f m2\n", grid.occupied_blocks(),
-              grid.blocks(), grid.slots(), before);
+  polder::coupling::Simulation simulation(scene);
+  const polder::coupling::Vector3 base{0.15, 0.05, 0};
+  const int top = simulation.probe_particle({0.1, kHeight, 0});
+  const double hydrostatic = simulation.cell_quantity(base, "pore_pressure");
 
-  // One block to the right: the numbering changes; what the levee covers before and after keeps its values.
-  const bool renumbered = activate(grid, levee_cells(grid, 0.8));
-  grid.carry(fill);
-  std::printf("moved by 0.8 m: renumbered %s, area carried %.2f m2\n", renumbered ? "yes" : "no",
-              area(grid, fill));
-
-  const bool exact = std::abs(before - 18.0) < 1e-9 && std::abs(area(grid, fill) - before) < 1e-9;
-  return renumbered && exact ? 0 : 1;
+  std::printf("%ld particles, %ld pressure cells, step limit %.3g s (%s)\n", simulation.particles(),
+              simulation.pressure_cells(), simulation.step_limit().dt,
+              simulation.step_limit().reason.c_str());
+  std::printf("%6s %21s %21s\n%6s %10s %10s %10s %10s\n", "", "excess pressure / q", "settlement M / (q H)",
+              "T", "Polder", "exact", "Polder", "exact");
+  bool agrees = true;
+  for (const double target : {0.05, 0.1, 0.2, 0.4}) {
+    while (simulation.time() * consolidation / (kHeight * kHeight) < target) simulation.step();
+    const double t = simulation.time() * consolidation / (kHeight * kHeight);
+    const double p = (simulation.cell_quantity(base, "pore_pressure") - hydrostatic) / kLoad;
+    // The followed point is the uppermost one, half a particle below the surface, and settles with what is
+    // under it.
+    const double s =
+        -simulation.particle_quantity(top, "displacement_y") * soil.wave_modulus() / (kLoad * kHeight);
+    const double p_exact = excess_pressure(kHeight - base[1], t), s_exact = settlement_degree(t);
+    std::printf("%6.3f %10.4f %10.4f %10.4f %10.4f\n", t, p, p_exact, s, s_exact);
+    agrees = agrees && std::abs(p - p_exact) < 0.02 && std::abs(s - s_exact) < 0.03;
+  }
+  std::printf("%s after %ld steps\n", agrees ? "agrees" : "DOES NOT AGREE", simulation.steps());
+  return agrees ? 0 : 1;
+} catch (const polder::InputError& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return static_cast<int>(polder::ExitCode::bad_input);
 }
