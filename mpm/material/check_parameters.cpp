@@ -72,7 +72,10 @@ class Checker {
     const bool friction = curve("friction", m_.friction), dilation = curve("dilation", m_.dilation);
     if (friction) within("friction", m_.friction, 0, 80 * degree, "from 0 to 80 degrees");
     if (dilation) within("dilation", m_.dilation, -45 * degree, 80 * degree, "from -45 to 80 degrees");
-    if (friction && dilation) dilation_below_friction();
+    if (friction && dilation) {
+      dilation_below_friction();
+      contraction_within_stiffness();
+    }
     if (!(m_.tension_cutoff >= 0))  // infinite is allowed: the apex limits it
       report("tension_cutoff", "tension_cutoff = " + std::to_string(m_.tension_cutoff), "at least 0");
   }
@@ -92,6 +95,21 @@ class Checker {
                "at most the friction angle");
         return;
       }
+  }
+
+  // A strongly contractive soil of nearly incompressible grains loses more strength with its confinement than
+  // flow on a plane or edge can shed: the return to the yield surface would not exist (principal_return.hpp:
+  // the stiffnesses of the multipliers must be positive).
+  void contraction_within_stiffness() {
+    const double sp = std::sin(range_of(m_.friction).highest), sq = std::sin(range_of(m_.dilation).lowest);
+    const double bulk = m_.bulk_modulus(), shear = m_.shear_modulus();
+    if (sq >= 0 || !(shear > 0) || !(bulk > 0)) return;
+    const double plane = 4 * shear * (1 + sp * sq / 3) + 4 * bulk * sp * sq;
+    const double common = 2 * shear * (1 - sp * sq / 3) + 4 * bulk * sp * sq, sided = 2 * shear * (sp + sq);
+    const double stiffest = 4 * shear, edge = plane + common - std::abs(sided);
+    if (plane < 0.05 * stiffest || edge < 0.05 * stiffest)
+      report("dilation", "dilation: contracts faster than the elastic stiffness can follow",
+             "less contraction, less friction or a smaller Poisson's ratio");
   }
 
   void undrained() {

@@ -18,11 +18,11 @@ void refuse_unsound(const mpm::MaterialParameters& material) {
 
 template <int D>
 std::unique_ptr<Law<D>> make_mohr_coulomb(const mpm::MaterialParameters& m, int capillary_index) {
-  bool varies = capillary_index >= 0;
-  for (const mpm::Mobilised* p : {&m.cohesion, &m.friction, &m.dilation})
-    varies |= mpm::compile_curve(*p).varies();
-  if (!varies) return std::make_unique<MohrCoulombLaw<D, ConstantStrength>>(m);
-  return std::make_unique<MohrCoulombLaw<D, MobilisedStrength>>(m, capillary_index);
+  const bool angles = mpm::compile_curve(m.friction).varies() || mpm::compile_curve(m.dilation).varies();
+  if (angles) return std::make_unique<MohrCoulombLaw<D, MobilisedStrength<Pack>>>(m, capillary_index);
+  if (mpm::compile_curve(m.cohesion).varies() || capillary_index >= 0)
+    return std::make_unique<MohrCoulombLaw<D, MobilisedStrength<double>>>(m, capillary_index);
+  return std::make_unique<MohrCoulombLaw<D, ConstantStrength>>(m);
 }
 
 }  // namespace

@@ -18,18 +18,17 @@ class MohrCoulombLaw final : public Law<D> {
       : elasticity_(m), strength_(m, arguments...) {}
 
   void update(StressBatch<D>& batch) const override {
-    // copies: the compiler knows that nothing written to the batch changes them
+    // a copy: the compiler knows that nothing written to the batch changes it
     const Elasticity elasticity = elasticity_;
-    const Strength strength = strength_;
     for (int p = 0; p < batch.packs; ++p) {
       elasticity.add_increment(batch.strain[p], batch.stress[p]);
-      correct(elasticity, strength, batch.stress[p], batch.state[p]);
+      correct(elasticity, strength_, batch.stress[p], batch.state[p]);
     }
   }
 
  private:
   static constexpr int kStress = StressBatch<D>::kStress;
-  using Real = typename Strength::Real;
+  using Angle = typename Strength::Angle;
 
   POLDER_INLINE static void correct(const Elasticity& elasticity, const Strength& strength,
                                     Pack (&stress)[kStress], Pack* state) {
@@ -37,15 +36,13 @@ class MohrCoulombLaw final : public Law<D> {
     Principal<D> principal;
     if (!can_yield(strength.bounds(), strength.lowest_cohesion(particle), stress, principal)) return;
     const Pack(&trial)[3] = principal.value;
-    const StrengthState<Real> m = strength.at(particle, Pack{});
-    const ReturnCoefficients<Real> coefficients(elasticity, m);
-    const Mask yields =
-        (trial[0] * (1 + m.sin_friction) - trial[2] * (1 - m.sin_friction) > coefficients.twice_cohesion) |
-        (trial[0] > m.tension);
+    const auto m = strength.at(particle, Pack{});
+    const ReturnCoefficients<Angle> k(elasticity, m.sin_friction, m.sin_dilation);
+    const Mask yields = (trial[0] * k.up - trial[2] * k.down > m.twice_cohesion()) | m.in_tension(trial[0]);
     if (!any(yields)) return;
     Pack s[3], r[kStress];
-    const PlasticCorrector<Strength> corrector(elasticity, strength);
-    const Pack plastic = corrector.correct(particle, m, coefficients, trial, yields, s);
+    const PlasticCorrector<Strength> corrector(elasticity, strength, k);
+    const Pack plastic = corrector.correct(particle, m, trial, yields, s);
     for (int i = 0; i < kStress; ++i) r[i] = stress[i];
     principal.recompose(s, r);
     for (int i = 0; i < kStress; ++i) stress[i] = select(yields, r[i], stress[i]);

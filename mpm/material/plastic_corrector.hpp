@@ -22,18 +22,20 @@ namespace polder::POLDER_SIMD_NAMESPACE {
 template <class Strength>
 class PlasticCorrector {
  public:
-  using Real = typename Strength::Real;
+  using Angle = typename Strength::Angle;
+  using State = StrengthState<Angle, typename Strength::Cohesion>;
   using Particle = typename Strength::Particle;
 
-  PlasticCorrector(const Elasticity& elasticity, const Strength& strength)
-      : elasticity_(elasticity), strength_(strength) {}
+  // coefficients: at the beginning of the step; those of constant angles serve all evaluations
+  POLDER_INLINE PlasticCorrector(const Elasticity& elasticity, const Strength& strength,
+                                 const ReturnCoefficients<Angle>& coefficients)
+      : elasticity_(elasticity), strength_(strength), coefficients_(coefficients) {}
 
   // trial: ordered principal stresses. start: strength at the beginning of the step. Lanes not in `yields`
   // may come out as anything. Returns the increment of plastic deviatoric strain.
-  POLDER_INLINE Pack correct(const Particle& particle, const StrengthState<Real>& start,
-                             const ReturnCoefficients<Real>& coefficients, const Pack (&trial)[3],
+  POLDER_INLINE Pack correct(const Particle& particle, const State& start, const Pack (&trial)[3],
                              Mask yields, Pack (&s)[3]) const {
-    return_to_surface(elasticity_, start, coefficients, trial, s);
+    return_to_surface(elasticity_, start, coefficients_, trial, s);
     const Pack first = plastic_increment(elasticity_, trial, s);
     if (!strength_.varies()) return first;
     Pack x = first;
@@ -45,8 +47,11 @@ class PlasticCorrector {
   // k(x) - x, and the stress that belongs to it.
   [[gnu::noinline]] Pack residual(const Particle& particle, const Pack (&trial)[3], Pack x,
                                   Pack (&s)[3]) const {
-    const StrengthState<Real> m = strength_.at(particle, x);
-    return_to_surface(elasticity_, m, ReturnCoefficients<Real>(elasticity_, m), trial, s);
+    const State m = strength_.at(particle, x);
+    if constexpr (std::is_same_v<Angle, double>)
+      return_to_surface(elasticity_, m, coefficients_, trial, s);
+    else
+      return_to_surface(elasticity_, m, {elasticity_, m.sin_friction, m.sin_dilation}, trial, s);
     return plastic_increment(elasticity_, trial, s) - x;
   }
 
@@ -73,7 +78,7 @@ class PlasticCorrector {
 
     Pack last = low, at_last = at_low;
     x = select(active, min(low + at_low, high), x);
-    Pack width = high - low;
+    Pack width = high - low, last_slope = broadcast(-1.0);
     for (int i = 1; i <= kMaxIterations && any(active); ++i) {
       const Pack h = residual(particle, trial, x, s);
       const Mask above = active & (h > 0), below = active & ~above;
@@ -83,8 +88,10 @@ class PlasticCorrector {
       Pack next = x - h / select(slope == 0, broadcast(-1.0), slope);
       const Mask secant = (next > low) & (next < high) & (slope < 0);
       const Mask done = (abs(h) <= noise) | (high - low <= 4e-16 * high);
-      // one more secant step from here is worth two further evaluations: take it and stop
-      const Mask last_step = (abs(h) <= 1e-7 * x) & secant & ~done;
+      // The error of a secant step is the step times the relative change of slope: where that is negligible,
+      // take the step and stop, which saves the evaluation that would confirm it.
+      const Mask last_step =
+          secant & ~done & (abs((next - x) * (slope - last_slope)) <= 1e-10 * x * abs(slope));
       Mask bisect = ~secant;
       if (i % 3 == 0) {  // the bracket must have halved since the last time
         bisect |= high - low > 0.5 * width;
@@ -93,6 +100,7 @@ class PlasticCorrector {
       next = select(bisect & ~last_step, 0.5 * (low + high), next);
       last = select(active, x, last);
       at_last = select(active, h, at_last);
+      last_slope = select(active, slope, last_slope);
       x = select(active & ~done, next, x);
       active &= ~(done | last_step);
     }
@@ -104,6 +112,7 @@ class PlasticCorrector {
 
   const Elasticity& elasticity_;
   const Strength& strength_;
+  ReturnCoefficients<Angle> coefficients_;
 };
 
 }  // namespace polder::POLDER_SIMD_NAMESPACE

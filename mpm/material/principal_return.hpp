@@ -12,37 +12,40 @@
 // here reduced to single multipliers). On an edge, two planes share the flow; the sum of their multipliers is
 // that of one plane between the distinct principal stress and the mean of the two equal ones.
 //
-// Real = double where all strengths are constants of the material, Pack where they differ between particles.
+// Angle and Cohesion are double where they are constants of the material, Pack where they differ between
+// particles.
 #pragma once
 
 #include "mpm/material/elastic.hpp"
 
 namespace polder::POLDER_SIMD_NAMESPACE {
 
-template <class Real>
+template <class Angle, class Cohesion>
 struct StrengthState {
-  Real sin_friction, cos_friction, cohesion, sin_dilation;
-  Real tension;  // min(cut-off, c cot phi)
+  Angle sin_friction, cos_friction, sin_dilation;
+  Cohesion cohesion;
+  double cutoff;  // of tension; the apex c cot phi may lie below it
+
+  POLDER_INLINE auto twice_cohesion() const { return 2 * cohesion * cos_friction; }
+  POLDER_INLINE Mask in_tension(Pack first) const {
+    return (first > cutoff) | (first * sin_friction > cohesion * cos_friction);
+  }
 };
 
-template <class Real>
+template <class Angle>
 struct ReturnCoefficients {
-  Real twice_cohesion;       // 2 c cos phi
-  Real first, middle, last;  // stress change for a unit of flow on the plane: -first, +middle, +last
-  Real plane, right, left;   // inverse stiffness of the multipliers
-  Real lowest;               // s3 where the plane s1 = T meets the Mohr-Coulomb plane
+  Angle first, middle, last;  // stress change for a unit of flow on the plane: -first, +middle, +last
+  Angle up, down;             // 1 + sin phi, 1 - sin phi
+  Angle plane;                // inverse stiffness of the plane's multiplier
 
-  POLDER_INLINE ReturnCoefficients(const Elasticity& e, const StrengthState<Real>& m) {
+  POLDER_INLINE ReturnCoefficients(const Elasticity& e, Angle sin_friction, Angle sin_dilation) {
     const double bulk = e.bulk, shear = e.shear;
-    const Real sp = m.sin_friction, sq = m.sin_dilation;
-    twice_cohesion = 2 * m.cohesion * m.cos_friction;
-    first = 2 * shear * (1 + sq * (1. / 3)) + 2 * bulk * sq;
-    middle = (4 * shear / 3 - 2 * bulk) * sq;
-    last = 2 * shear * (1 - sq * (1. / 3)) - 2 * bulk * sq;
-    plane = 1 / (first * (1 + sp) + last * (1 - sp));
-    right = 1 / (first * (1 + sp) + 0.5 * (middle + last) * (1 - sp));
-    left = 1 / (0.5 * (first - middle) * (1 + sp) + last * (1 - sp));
-    lowest = (m.tension * (1 + sp) - twice_cohesion) / (1 - sp);
+    first = 2 * shear * (1 + sin_dilation * (1. / 3)) + 2 * bulk * sin_dilation;
+    middle = (4 * shear / 3 - 2 * bulk) * sin_dilation;
+    last = 2 * shear * (1 - sin_dilation * (1. / 3)) - 2 * bulk * sin_dilation;
+    up = 1 + sin_friction;
+    down = 1 - sin_friction;
+    plane = 1 / (first * up + last * down);
   }
 };
 
@@ -54,12 +57,16 @@ POLDER_INLINE Pack plastic_increment(const Elasticity& e, const Pack (&trial)[3]
 }
 
 // Regions in which at least one tension plane acts. Only lanes of `act` are changed.
-template <class Real>
-[[gnu::noinline]] void return_in_tension(const Elasticity& e, const StrengthState<Real>& m,
-                                         const ReturnCoefficients<Real>& k, const Pack (&t)[3], Mask act,
+template <class Angle, class Cohesion>
+[[gnu::noinline]] void return_in_tension(const Elasticity& e, const StrengthState<Angle, Cohesion>& m,
+                                         const ReturnCoefficients<Angle>& k, const Pack (&t)[3], Mask act,
                                          Pack (&s)[3]) {
   const double axial = e.bulk + 4 * e.shear / 3, lateral = e.lame;
-  const Pack tension = m.tension - Pack{}, lowest = min(k.lowest - Pack{}, tension);
+  const Pack sine = m.sin_friction - Pack{}, cohesion = m.cohesion * m.cos_friction - Pack{};
+  const Pack apex = cohesion / select(sine > 0, sine, broadcast(1.0));
+  const Pack tension = select(sine > 0, min(apex, m.cutoff), broadcast(m.cutoff));
+  // s3 where the plane s1 = T meets the Mohr-Coulomb plane
+  const Pack lowest = min((tension * k.up - 2 * cohesion) / k.down, tension);
   // one plane: s1 = T
   const Pack one = (t[0] - tension) / axial;
   const Pack one2 = t[1] - lateral * one, one3 = t[2] - lateral * one;
@@ -71,7 +78,7 @@ template <class Real>
   const Pack three = (t[0] + t[1] + t[2] - 3 * tension) / (3 * e.bulk);
   const Mask is_three = t[2] - tension >= lateral * three;
   // s1 = T and the Mohr-Coulomb plane: s3 is known, s2 moves between its neighbours (at the ends: corners)
-  const Real stiffness = k.first * lateral + axial * k.last;
+  const Angle stiffness = k.first * lateral + axial * k.last;
   const Pack over = t[0] - tension, under = lowest - t[2];
   const Pack shear_flow = (over * lateral + axial * under) / stiffness;
   const Pack tension_flow = (k.last * over - k.first * under) / stiffness;
@@ -85,11 +92,10 @@ template <class Real>
 }
 
 // Ordered trial stresses t to s. Lanes inside the surface come back as they are.
-template <class Real>
-POLDER_INLINE void return_to_surface(const Elasticity& e, const StrengthState<Real>& m,
-                                     const ReturnCoefficients<Real>& k, const Pack (&t)[3], Pack (&s)[3]) {
-  const Real up = 1 + m.sin_friction, down = 1 - m.sin_friction;
-  const Pack f = t[0] * up - t[2] * down - k.twice_cohesion;
+template <class Angle, class Cohesion>
+POLDER_INLINE void return_to_surface(const Elasticity& e, const StrengthState<Angle, Cohesion>& m,
+                                     const ReturnCoefficients<Angle>& k, const Pack (&t)[3], Pack (&s)[3]) {
+  const Pack f = t[0] * k.up - t[2] * k.down - m.twice_cohesion();
   const Mask yields = f > 0;
   Pack flow = f * k.plane;
   s[0] = t[0] - k.first * flow, s[1] = t[1] + k.middle * flow, s[2] = t[2] + k.last * flow;
@@ -100,15 +106,16 @@ POLDER_INLINE void return_to_surface(const Elasticity& e, const StrengthState<Re
     const Mask right = (1 - m.sin_dilation) * (t[0] - t[1]) > (1 + m.sin_dilation) * (t[1] - t[2]);
     const Pack pair = 0.5 * (t[1] + select(right, t[2], t[0]));
     const Pack high = select(right, t[0], pair), low = select(right, pair, t[2]);
-    flow = (high * up - low * down - k.twice_cohesion) * select(right, k.right - Pack{}, k.left - Pack{});
-    const Pack e0 = high - select(right, k.first - Pack{}, 0.5 * (k.first - k.middle) - Pack{}) * flow;
-    const Pack e2 = low + select(right, 0.5 * (k.middle + k.last) - Pack{}, k.last - Pack{}) * flow;
+    const Pack fall = select(right, k.first - Pack{}, 0.5 * (k.first - k.middle) - Pack{});
+    const Pack rise = select(right, 0.5 * (k.middle + k.last) - Pack{}, k.last - Pack{});
+    flow = (high * k.up - low * k.down - m.twice_cohesion()) / (fall * k.up + rise * k.down);
+    const Pack e0 = high - fall * flow, e2 = low + rise * flow;
     s[0] = select(on_plane, s[0], e0);
     s[1] = select(on_plane, s[1], select(right, e2, e0));
     s[2] = select(on_plane, s[2], e2);
   }
   for (int i = 0; i < 3; ++i) s[i] = select(yields, s[i], t[i]);
-  const Mask in_tension = s[0] > m.tension;
+  const Mask in_tension = m.in_tension(s[0]);
   if (any(in_tension)) return_in_tension(e, m, k, t, in_tension, s);
 }
 

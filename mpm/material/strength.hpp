@@ -11,6 +11,7 @@
 #pragma once
 
 #include <limits>
+#include <type_traits>
 
 #include "mpm/material/curve.hpp"
 #include "mpm/material/pack_math.hpp"
@@ -26,7 +27,8 @@ struct StrengthBounds {
 // Mohr-Coulomb, all parameters constant.
 class ConstantStrength {
  public:
-  using Real = double;
+  using Angle = double;
+  using Cohesion = double;
   struct Particle {};
   explicit ConstantStrength(const mpm::MaterialParameters& m) {
     const double friction = mpm::compile_curve(m.friction).start;
@@ -34,22 +36,20 @@ class ConstantStrength {
     state_.cos_friction = std::cos(friction);
     state_.cohesion = mpm::compile_curve(m.cohesion).start;
     state_.sin_dilation = std::sin(mpm::compile_curve(m.dilation).start);
-    const double apex =
-        friction > 0 ? state_.cohesion / std::tan(friction) : std::numeric_limits<double>::infinity();
-    state_.tension = apex < m.tension_cutoff ? apex : m.tension_cutoff;
-    bounds_ = {state_.sin_friction, state_.sin_friction, state_.cos_friction, state_.tension};
+    state_.cutoff = m.tension_cutoff;
   }
   POLDER_INLINE Particle particle(const Pack*) const { return {}; }
-  POLDER_INLINE StrengthState<double> at(Particle, Pack) const { return state_; }
+  POLDER_INLINE StrengthState<double, double> at(Particle, Pack) const { return state_; }
   POLDER_INLINE double lowest_cohesion(Particle) const { return state_.cohesion; }
-  POLDER_INLINE StrengthBounds bounds() const { return bounds_; }
+  POLDER_INLINE StrengthBounds bounds() const {
+    return {state_.sin_friction, state_.sin_friction, state_.cos_friction, state_.cutoff};
+  }
   static constexpr bool varies() { return false; }
   static constexpr int knots() { return 0; }
   POLDER_INLINE Pack knot(int, Particle) const { return Pack{}; }
 
  private:
-  StrengthState<double> state_;
-  StrengthBounds bounds_;
+  StrengthState<double, double> state_;
 };
 
 POLDER_INLINE Pack value_of(const mpm::Curve& c, Pack kappa) {
@@ -76,10 +76,20 @@ POLDER_INLINE Pack mean_of(const mpm::Curve& c, Pack from, Pack to) {
   return select(moves, c.start + sum / select(moves, to - from, broadcast(1.0)), value_of(c, from));
 }
 
-// Mohr-Coulomb with parameters mobilised by plastic strain, and capillary cohesion.
+POLDER_INLINE void assign(double& to, double from) {
+  to = from;
+}
+POLDER_INLINE void assign(Pack& to, double from) {
+  to = broadcast(from);
+}
+
+// Mohr-Coulomb with parameters mobilised by plastic strain, and capillary cohesion. AngleType is double where
+// neither friction nor dilation varies, which spares most of the work of an evaluation.
+template <class AngleType>
 class MobilisedStrength {
  public:
-  using Real = Pack;
+  using Angle = AngleType;
+  using Cohesion = Pack;
   struct Particle {
     Pack kappa, capillary;
   };
@@ -89,7 +99,7 @@ class MobilisedStrength {
         dilation_(mpm::compile_curve(m.dilation)),
         cohesion_(mpm::compile_curve(m.cohesion)),
         capillary_(mpm::compile_curve(m.capillary_cohesion)),
-        tension_(m.tension_cutoff),
+        sin_dilation_(std::sin(dilation_.start)),
         capillary_index_(capillary_index) {
     varies_ = friction_.varies() || dilation_.varies() || cohesion_.varies() || capillary_.varies();
     bounds_ = {std::sin(friction_.lowest), std::sin(friction_.highest), std::cos(friction_.highest),
@@ -102,19 +112,22 @@ class MobilisedStrength {
     return {state[0], capillary_index_ < 0 ? Pack{} : state[capillary_index_]};
   }
 
-  POLDER_INLINE StrengthState<Pack> at(const Particle& p, Pack increment) const {
+  POLDER_INLINE StrengthState<Angle, Pack> at(const Particle& p, Pack increment) const {
     const Pack kappa = p.kappa + increment;
-    StrengthState<Pack> m;
-    m.sin_friction = friction_.varies() ? sine(value_of(friction_, kappa)) : broadcast(bounds_.sin_lowest);
-    m.cos_friction =
-        friction_.varies() ? sqrt(1 - m.sin_friction * m.sin_friction) : broadcast(bounds_.cos_lowest);
+    StrengthState<Angle, Pack> m;
+    assign(m.sin_friction, bounds_.sin_lowest);
+    assign(m.cos_friction, bounds_.cos_lowest);
+    assign(m.sin_dilation, sin_dilation_);
+    if constexpr (!std::is_same_v<Angle, double>) {
+      if (friction_.varies()) {
+        m.sin_friction = sine(value_of(friction_, kappa));
+        m.cos_friction = sqrt(1 - m.sin_friction * m.sin_friction);
+      }
+      if (dilation_.varies()) m.sin_dilation = sine(mean_of(dilation_, p.kappa, kappa));
+    }
     m.cohesion = value_of(cohesion_, kappa);
     if (capillary_index_ >= 0) m.cohesion += p.capillary * value_of(capillary_, kappa);
-    m.sin_dilation =
-        sine(dilation_.varies() ? mean_of(dilation_, p.kappa, kappa) : broadcast(dilation_.start));
-    const Mask apex = m.sin_friction > 0;
-    const Pack limit = m.cohesion * m.cos_friction / select(apex, m.sin_friction, broadcast(1.0));
-    m.tension = select(apex, min(limit, tension_), broadcast(tension_));
+    m.cutoff = bounds_.tension;
     return m;
   }
 
@@ -135,7 +148,7 @@ class MobilisedStrength {
   }
 
   mpm::Curve friction_, dilation_, cohesion_, capillary_;
-  double tension_;
+  double sin_dilation_;  // of a constant dilation angle
   int capillary_index_;
   bool varies_;
   StrengthBounds bounds_;
@@ -147,7 +160,8 @@ class MobilisedStrength {
 // the particle.
 class UndrainedStrength {
  public:
-  using Real = Pack;
+  using Angle = double;
+  using Cohesion = Pack;
   struct Particle {
     Pack kappa, peak, residual;
   };
@@ -161,9 +175,8 @@ class UndrainedStrength {
   POLDER_INLINE Pack shear_strength(const Particle& p, Pack increment) const {
     return max(p.peak + softening_ * (p.kappa + increment), p.residual);
   }
-  POLDER_INLINE StrengthState<Pack> at(const Particle& p, Pack increment) const {
-    return {Pack{}, broadcast(1.0), shear_strength(p, increment), Pack{},
-            broadcast(std::numeric_limits<double>::infinity())};
+  POLDER_INLINE StrengthState<double, Pack> at(const Particle& p, Pack increment) const {
+    return {0, 1, 0, shear_strength(p, increment), std::numeric_limits<double>::infinity()};
   }
   POLDER_INLINE Pack lowest_cohesion(const Particle& p) const { return varies() ? p.residual : p.peak; }
   POLDER_INLINE StrengthBounds bounds() const { return {}; }
