@@ -92,9 +92,19 @@ POLDER_INLINE Pack sqrt(Pack x) {
   return r;
 }
 POLDER_INLINE bool any(Mask m) {
+  // the sign bits in one instruction; adding up the lanes takes ten
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+  typedef long long Signs __attribute__((vector_size(64)));
+  return __builtin_ia32_cvtq2mask512((Signs)m) != 0;
+#elif defined(__AVX__) && !defined(__AVX512F__)
+  return __builtin_ia32_movmskpd256((Pack)m) != 0;
+#elif defined(__SSE2__) && !defined(__AVX__)
+  return __builtin_ia32_movmskpd((Pack)m) != 0;
+#else
   std::int64_t r = 0;
   for (int i = 0; i < kLanes; ++i) r |= m[i];
   return r != 0;
+#endif
 }
 POLDER_INLINE bool all(Mask m) {
   return !any(~m);
