@@ -61,9 +61,8 @@ SolveReport DirectSolver<D>::solve(const SystemValues& system, const Accuracy& a
     r = std::sqrt(r2);
     if (r <= accuracy.tolerance * b + accuracy.floor + 16 * eps * std::sqrt(x2)) break;
     if (refinement == 2)
-      throw NumericalError("pressure equation: sparse Cholesky leaves a residual of " +
-                           number(r / b) + " of the right-hand side after refinement (" +
-                           std::to_string(n) + " cells)");
+      throw NumericalError("pressure equation: sparse Cholesky leaves a residual of " + number(r / b) +
+                           " of the right-hand side after refinement (" + std::to_string(n) + " cells)");
     cholesky_.solve(residual_, correction_);
     for (std::size_t i = 0; i < n; ++i) x[i] += correction_[i];
   }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/threads.hpp"
+#include "core/error.hpp"
 #include "fdm/direct_solver.hpp"
 #include "fdm/multigrid.hpp"
 
@@ -37,39 +37,45 @@ double dot(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
-// Measured with a levee-shaped mask, new values in every solution (bench/pressure_solvers).
-template <>
-int direct_limit<2>() {
-  return 1500;
-}
-template <>
-int direct_limit<3>() {
-  return 1000;
-}
-
 namespace {
 
-// Chooses between the two at every analysis.
+// Multigrid above the limit, and sparse Cholesky where multigrid does not converge (contrast and anisotropy
+// together can be too much for its plain aggregates). Which one answers depends on the system alone.
 template <int D>
 class AutomaticSolver final : public LinearSolver<D> {
  public:
-  const char* name() const override { return chosen_ ? chosen_->name() : "automatic"; }
+  const char* name() const override { return small_ ? direct_.name() : multigrid_.name(); }
   void analyse(const Connectivity<D>& connectivity) override {
-    const bool small = static_cast<int>(connectivity.cells.size()) <= direct_limit<D>();
-    if (small)
-      chosen_ = &direct_;
+    small_ = static_cast<int>(connectivity.cells.size()) <= kDirectLimit;
+    connectivity_ = connectivity;
+    direct_ready_ = false;
+    if (small_)
+      prepare_direct();
     else
-      chosen_ = &multigrid_;
-    chosen_->analyse(connectivity);
+      multigrid_.analyse(connectivity);
   }
   SolveReport solve(const SystemValues& system, const Accuracy& accuracy, std::span<double> x) override {
-    return chosen_->solve(system, accuracy, x);
+    if (!small_) {
+      try {
+        return multigrid_.solve(system, accuracy, x);
+      } catch (const NumericalError&) {
+        if (!direct_ready_) prepare_direct();  // throws in its turn if the system has no solution
+      }
+    }
+    return direct_.solve(system, accuracy, x);
   }
 
  private:
+  void prepare_direct() {
+    direct_.analyse(connectivity_);
+    direct_ready_ = true;
+  }
+
+  Connectivity<D> connectivity_;
   DirectSolver<D> direct_;
   Multigrid<D> multigrid_;
-  LinearSolver<D>* chosen_ = nullptr;
+  bool small_ = true;
+  bool direct_ready_ = false;
 };
 
 }  // namespace

@@ -68,7 +68,7 @@ void random_levee(Scene<2>& s, int nx) {
 }  // namespace
 
 TEST_CASE("manufactured pressure converges with second order in 2D, axisymmetry and 3D") {
-  const auto check = [](const char* space, double coarse, double fine, double least_order) {
+  const auto check = [](const std::string& space, double coarse, double fine, double least_order) {
     const double order = std::log2(coarse / fine);
     MESSAGE(space << ": largest errors " << coarse << ", " << fine << ", order " << order);
     CHECK(order > least_order);

@@ -159,6 +159,22 @@ TEST_CASE("failures are reported, not returned") {
   CHECK_THROWS_AS(multigrid.solve(s.values(), {}, x), NumericalError);
 }
 
+TEST_CASE("where multigrid does not converge the automatic choice answers with Cholesky") {
+  System<2> s = irregular<2>({60, 40}, 1, 1, [](const auto&) { return true; });
+  Random random;
+  for (double& link : s.link) link *= std::pow(10.0, 14 * random() - 7);
+  const Accuracy accuracy{.tolerance = 1e-13};
+  std::vector<double> x(s.sink.size()), y(x);
+  Multigrid<2> multigrid;
+  multigrid.analyse(s.connectivity);
+  CHECK_THROWS_AS(multigrid.solve(s.values(), accuracy, x), NumericalError);
+  const auto direct = make_solver<2>(SolverKind::direct), automatic = make_solver<2>(SolverKind::automatic);
+  for (auto* solver : {direct.get(), automatic.get()}) solver->analyse(s.connectivity);
+  direct->solve(s.values(), accuracy, x);
+  automatic->solve(s.values(), accuracy, y);
+  CHECK(x == y);
+}
+
 TEST_CASE("Cholesky solves a small system to round-off") {
   // Tridiagonal 2, -1: the inverse applied to ones is i (n + 1 - i) / 2.
   constexpr int n = 50;
