@@ -1,5 +1,7 @@
 // Checkpoints: exact round trip, and refusal of everything that is not exactly what was written.
 #include <doctest/doctest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstring>
@@ -9,6 +11,7 @@
 #include "core/error.hpp"
 #include "io/atomic_file.hpp"
 #include "io/checkpoint.hpp"
+#include "io/csv.hpp"
 #include "io/hash.hpp"
 #include "tests/unit/io_support.hpp"
 
@@ -123,22 +126,38 @@ TEST_CASE("every damaged byte is found, or is one that carries nothing") {
   write(path);
   const std::string good = read_file(path);
   const std::uint64_t expected = content(path);
-  std::size_t refused = 0, harmless = 0, wrong = 0;
   const fs::path damaged = folder / "damaged.h5";
-  for (std::size_t at = 0; at < good.size(); at += 5) {
-    std::string bad = good;
-    bad[at] = static_cast<char>(bad[at] ^ (1 << at % 8));
-    test::write_text(damaged, bad);
-    const test::LeaksOfLibraryIgnored ignored;
-    try {
-      content(damaged) == expected ? ++harmless : ++wrong;
-    } catch (const EnvironmentError& error) {
-      ++refused;
-      REQUIRE(std::string(error.what()).starts_with(damaged.string() + ": "));
+  std::size_t refused = 0, unnamed = 0, wrong = 0;
+  const auto damage_all = [&] {
+    for (std::size_t at = 0; at < good.size(); at += 5) {
+      std::string bad = good;
+      bad[at] = static_cast<char>(bad[at] ^ (1 << at % 8));
+      test::write_text(damaged, bad);
+      try {
+        if (content(damaged) != expected) ++wrong;
+      } catch (const EnvironmentError& error) {
+        ++refused;
+        if (!std::string(error.what()).starts_with(damaged.string() + ": ")) ++unnamed;
+      }
     }
+  };
+  // In a process of its own: HDF5 1.10 loses memory when it meets damaged metadata, which is not for the leak
+  // sanitizer to report here; and a crash is a result too.
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    damage_all();
+    test::write_text(folder / "counts.csv", "refused,unnamed,wrong\n" + std::to_string(refused) + "," +
+                                                std::to_string(unnamed) + "," + std::to_string(wrong) + "\n");
+    _exit(0);
   }
-  CHECK(wrong == 0);
-  CHECK(refused > good.size() / 10);
+  int status = 0;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  REQUIRE(status == 0);
+  const CsvTable counts(folder / "counts.csv");
+  CHECK(counts.column("wrong")[0] == 0);
+  CHECK(counts.column("unnamed")[0] == 0);
+  CHECK(counts.column("refused")[0] > static_cast<double>(good.size()) / 10);
 }
 
 TEST_CASE("a truncated, empty, missing or foreign file is refused") {

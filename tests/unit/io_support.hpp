@@ -3,9 +3,6 @@
 
 #include <sys/resource.h>
 #include <unistd.h>
-#if defined(__SANITIZE_ADDRESS__)
-#include <sanitizer/lsan_interface.h>
-#endif
 
 #include <csignal>
 #include <cstdlib>
@@ -55,16 +52,6 @@ class FileSizeLimit {
  private:
   rlimit before_{};
   void (*handler_)(int);
-};
-
-// While it lives, the leak sanitizer does not look: HDF5 1.10 itself loses memory when it meets damaged
-// metadata.
-struct LeaksOfLibraryIgnored {
-#if defined(__SANITIZE_ADDRESS__)
-  __lsan::ScopedDisabler disabler;
-#else
-  LeaksOfLibraryIgnored() {}
-#endif
 };
 
 inline void write_text(const std::filesystem::path& path, const std::string& text) {
