@@ -159,6 +159,7 @@ struct Stage {
   double duration = 0;             // simulated time [s]; equilibrium: at most
   double damping = 0;              // local damping alpha [0, 1)
   bool plastic = true;             // false: materials respond elastically in this stage
+  bool sticking = false;         // true: friction boundaries hold without slip in this stage
   bool water_flows = true;         // false: pore pressure stays as it is
   double gravity_ramp = 0;         // time over which gravity grows from 0 to its value [s]
   double force_tolerance = 1e-3;   // equilibrium: out-of-balance force ratio

@@ -60,6 +60,7 @@ StepLimit Simulation::Run<D>::step_limit() const {
 template <int D>
 void Simulation::Run<D>::begin_stage() {
   world->skeleton.set_laws(scene.materials, present().plastic);
+  world->skeleton.boundaries().set_sticking(present().sticking);
   laws_set = true;
 }
 

@@ -44,7 +44,6 @@ void BoundarySet<D>::update(const Grid<D>& grid) {
   if (revision_ == grid.revision()) return;
   revision_ = grid.revision();
   nodes_.clear();
-  fixed_.assign(grid.slots(), 0);
   for (std::size_t s = 0; s < specs_.size(); ++s) {
     const BoundarySpec<D>& spec = specs_[s];
     // One rule for a node of one side: the later one.
@@ -63,15 +62,6 @@ void BoundarySet<D>::update(const Grid<D>& grid) {
       nodes_.push_back({slot, static_cast<int>(s), normal});
     }
   }
-  for (const Node& n : nodes_)
-    for (int d = 0; d < D; ++d) {
-      const BoundarySpec<D>& spec = specs_[n.spec];
-      const bool whole = spec.kind == BoundaryKind::fixed ||
-                         (spec.kind == BoundaryKind::velocity && spec.prescribed[d]) ||
-                         ((spec.kind == BoundaryKind::roller || spec.kind == BoundaryKind::friction) &&
-                          std::abs(n.normal[d]) > 1 - 1e-12);
-      if (whole) fixed_[n.slot] |= static_cast<std::uint8_t>(1u << d);
-    }
 }
 
 template <int D>
@@ -114,7 +104,7 @@ void BoundarySet<D>::apply(double time, double dt, const Reals& sums, Reals& v, 
         for (int d = 0; d < D; ++d) u[d] -= normal * n.normal[d], slip += u[d] * u[d];
         slip = std::sqrt(slip);
         if (!friction || slip == 0) break;
-        const double keep = std::max(0.0, 1 + spec.coefficient * normal / slip);
+        const double keep = sticking_ ? 0.0 : std::max(0.0, 1 + spec.coefficient * normal / slip);
         for (int d = 0; d < D; ++d) u[d] *= keep;
         break;
       }

@@ -43,6 +43,9 @@ class BoundarySet {
 
   const std::vector<BoundarySpec<D>>& specs() const { return specs_; }
 
+  // Friction boundaries hold without slip while this is set (a stage that builds up initial stress).
+  void set_sticking(bool sticking) { sticking_ = sticking; }
+
   // Find the constrained nodes; cheap when the grid has not changed.
   void update(const Grid<D>& grid);
 
@@ -54,9 +57,6 @@ class BoundarySet {
   // Force of boundary i on the material in the last recorded step [N per m thickness, per radian, or N].
   const Point<D>& reaction(int i) const { return reaction_[i]; }
 
-  // Components that no motion can change: bit d set where component d of the slot is prescribed.
-  const std::vector<std::uint8_t>& fixed_components() const { return fixed_; }
-
  private:
   struct Node {
     int slot;
@@ -65,9 +65,9 @@ class BoundarySet {
   };
   std::vector<BoundarySpec<D>> specs_;
   std::vector<Node> nodes_;
-  std::vector<std::uint8_t> fixed_;
   std::vector<Point<D>> reaction_;
   std::uint64_t revision_ = 0;
+  bool sticking_ = false;
 };
 
 extern template class BoundarySet<2>;

@@ -100,13 +100,8 @@ void Skeleton<D>::scatter(double time) {
 
 template <int D>
 void Skeleton<D>::predict(double dt, const Point<D>& gravity, double damping, const Reals* acceleration) {
-  struct Norms {
-    double unbalanced = 0, load = 0;
-  };
-  std::vector<Norms> norms(grid_.blocks());
-  const auto& fixed = boundaries_.fixed_components();
+  std::vector<double> loads(grid_.blocks(), 0.0);
   parallel_for(grid_.blocks(), [&](int block) {
-    Norms& n = norms[block];
     for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
       const double* s = &sums_[static_cast<std::size_t>(i) * kSum];
       const double* v = &v_old_[static_cast<std::size_t>(i) * kVector];
@@ -118,17 +113,15 @@ void Skeleton<D>::predict(double dt, const Point<D>& gravity, double damping, co
       for (int d = 0; d < D; ++d) {
         double a = s[kForce + d] / s[0] + gravity[d];
         if (acceleration != nullptr) a += (*acceleration)[static_cast<std::size_t>(i) * kVector + d];
-        if (!(fixed[i] >> d & 1)) n.unbalanced += s[0] * s[0] * a * a;
-        n.load += s[0] * s[0] * gravity[d] * gravity[d];
+        loads[block] += s[0] * s[0] * gravity[d] * gravity[d];
         if (damping > 0) a *= a * v[d] > 0 ? 1 - damping : a * v[d] < 0 ? 1 + damping : 1.0;
         u[d] = v[d] + dt * a;
       }
     }
   });
-  double unbalanced = 0, load = 0;
-  for (const Norms& n : norms) unbalanced += n.unbalanced, load += n.load;
+  double load = 0;
+  for (double l : loads) load += l;
   for (int d = 0; d < D; ++d) load += applied_load_[d] * applied_load_[d];
-  unbalanced_ = std::sqrt(unbalanced);
   load_norm_ = std::sqrt(load);
 }
 
@@ -141,6 +134,19 @@ void Skeleton<D>::constrain(double time, double dt, const Reals* correction, Rea
       v[i] = v_trial_[i] + (correction != nullptr ? (*correction)[i] : 0.0);
   });
   boundaries_.apply(time, dt, sums_, v, true, record);
+  if (!record) return;
+  std::vector<double> squares(grid_.blocks(), 0.0);
+  parallel_for(grid_.blocks(), [&](int block) {
+    for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i)
+      for (int d = 0; d < D; ++d) {
+        const std::size_t j = static_cast<std::size_t>(i) * kVector + d;
+        const double impulse = sums_[static_cast<std::size_t>(i) * kSum] * (v[j] - v_old_[j]);
+        squares[block] += impulse * impulse;
+      }
+  });
+  double square = 0;
+  for (double x : squares) square += x;
+  unbalanced_ = std::sqrt(square) / dt;
 }
 
 template <int D>

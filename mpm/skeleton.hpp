@@ -92,8 +92,8 @@ class Skeleton {
     return mass_floor_;
   }  // nodes lighter than this move with their neighbours' momentum only
 
-  // Out-of-balance force of the last predict(): norm over free components of m a before damping, and of the
-  // total load (gravity and surface loads) [N].
+  // Out-of-balance force of the last recorded constrain(): norm over the nodes of mass times acceleration, reactions,
+  // pore pressure and damping included; zero at rest. load_norm: of gravity and surface loads [N].
   double unbalanced_force() const { return unbalanced_; }
   double load_norm() const { return load_norm_; }
   // Sum of surface loads in the last scatter [N].
