@@ -44,7 +44,7 @@ def straight_map(name, first, last):
     return ListedColormap(np.where(linear > 0.0031308, 1.055 * linear ** (1 / 2.4) - 0.055, 12.92 * linear), name)
 
 
-WATER = straight_map("water", (0.93, -0.02, -0.025), (0.30, -0.02, -0.12))  # pale to deep blue
+WATER = straight_map("water", (0.94, -0.025, -0.02), (0.33, -0.025, -0.09))  # pale to deep blue
 
 
 def time_unit(span):
