@@ -1,0 +1,162 @@
+// Bodies: their shapes, where they lie, whether they overlap, and how many particles they make.
+#include <algorithm>
+#include <cmath>
+
+#include "app/check_scene.hpp"
+#include "app/codecs.hpp"
+#include "app/geometry.hpp"
+#include "app/size_estimate.hpp"
+
+namespace polder::app {
+namespace {
+
+using coupling::Body;
+using coupling::Scene;
+using coupling::Vector3;
+
+std::string body_key(std::size_t i) {
+  return "body." + std::to_string(i + 1);
+}
+
+// The key that holds a body's shape.
+std::string shape_key(const Body& body, std::size_t i) {
+  return body_key(i) + (body.box ? ".box" : body.centre ? ".centre" : ".polygon");
+}
+
+// Numbers in messages: enough digits to find the place.
+std::string rounded(double value) {
+  if (value == 0) return "0";
+  const double scale = std::pow(10, 4 - std::floor(std::log10(std::abs(value))));
+  return format_number(std::round(value * scale) / scale);
+}
+
+bool check_polygon(const Body& body, const std::string& key, Reader& reader) {
+  const Polygon& p = body.polygon;
+  for (std::size_t i = 0; i < p.size(); ++i)
+    if (p[i] == p[(i + 1) % p.size()]) {
+      reader.error(key,
+                   i + 1 < p.size()
+                       ? "points " + std::to_string(i + 1) + " and " + std::to_string(i + 2) + " are the same"
+                       : "the last point repeats the first",
+                   "each corner once");
+      return false;
+    }
+  const double area = std::abs(signed_area(p));
+  const Extent e = extent(body, 2);
+  const double span = std::max(e.upper[0] - e.lower[0], e.upper[1] - e.lower[1]);
+  if (area <= 1e-12 * span * span) {
+    reader.error(key, "empty body: its corners lie on one line", "corners that enclose an area");
+    return false;
+  }
+  if (const auto crossing = crossing_edges(p)) {
+    const auto edge = [&](std::size_t i) {
+      return std::to_string(i + 1) + "-" + std::to_string((i + 1) % p.size() + 1);
+    };
+    reader.error(key,
+                 "the edges " + edge(crossing->first) + " and " + edge(crossing->second) + " cross or touch",
+                 "a polygon whose edges meet at its corners only");
+    return false;
+  }
+  return true;
+}
+
+bool check_place(const Body& body, const std::string& key, Reader& reader) {
+  const coupling::GridSpec& grid = reader.scene.grid;
+  const int dimension = reader.scene.dimension();
+  const Extent e = extent(body, dimension);
+  if (grid.space == Space::axisymmetric && e.lower[0] < 0) {
+    reader.error(
+        key, "the body begins at x = " + rounded(e.lower[0]) + ", beyond the axis of an axisymmetric grid",
+        "x of at least 0");
+    return false;
+  }
+  if (reader.failed("grid")) return true;
+  const double tolerance = 1e-9 * grid.cell;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(dimension); ++i) {
+    const double lower = grid.origin[i], upper = grid.origin[i] + grid.size[i];
+    if (e.lower[i] >= lower - tolerance && e.upper[i] <= upper + tolerance) continue;
+    const std::string axis(1, "xyz"[i]);
+    reader.error(key,
+                 "body outside the grid: " + axis + " from " + rounded(e.lower[i]) + " to " +
+                     rounded(e.upper[i]) + " m",
+                 axis + " from " + rounded(lower) + " to " + rounded(upper) + " m");
+    return false;
+  }
+  return true;
+}
+
+void check_overlaps(const std::vector<bool>& sound, Reader& reader) {
+  const Scene& scene = reader.scene;
+  const double cell = std::pow(scene.grid.cell, scene.dimension());
+  for (std::size_t j = 1; j < scene.bodies.size(); ++j)
+    for (std::size_t i = 0; i < j; ++i) {
+      if (!sound[i] || !sound[j]) continue;
+      const double shared = overlap(scene.bodies[i], scene.bodies[j], scene.dimension());
+      if (shared <= 1e-6 * cell) continue;
+      const bool sized = scene.dimension() == 2 || (scene.bodies[i].box && scene.bodies[j].box);
+      reader.error(
+          shape_key(scene.bodies[j], j),
+          "overlaps body \"" + scene.bodies[i].name + "\"" +
+              (sized ? " by " + rounded(shared) + (scene.dimension() == 3 ? " m3" : " m2") : std::string()),
+          "bodies that touch at most");
+    }
+}
+
+void check_size(Reader& reader) {
+  const SizeEstimate size = estimate_size(reader.scene);
+  const auto coarse = [](double value) {
+    const double scale = std::pow(10, 1 - std::floor(std::log10(value)));
+    return format_number(std::round(value * scale) / scale);
+  };
+  const std::string cells = "; a larger grid.cell";
+  if (size.particles > kMaxParticles)
+    reader.error("grid.cell",
+                 "the bodies make about " + coarse(size.particles) + " particles, " +
+                     coarse(size.memory / 1e9) + " GB of memory",
+                 "at most " + format_number(kMaxParticles) + " particles" + cells);
+  else if (size.cells > kMaxCells)
+    reader.error("grid.cell", "the grid has about " + coarse(size.cells) + " cells",
+                 "at most " + format_number(kMaxCells) + " cells" + cells);
+}
+
+void check_initial_stress(const Body& body, std::size_t i, Reader& reader) {
+  if (body.stress.kind != coupling::InitialStress::Kind::k0 || reader.failed("gravity")) return;
+  const Vector3& g = reader.scene.gravity;
+  const std::size_t up = static_cast<std::size_t>(reader.scene.dimension()) - 1;
+  const std::string key = body_key(i) + ".initial.stress";
+  if (g == Vector3{})
+    reader.error(key, "k0 without gravity: the weight that makes the stress is missing",
+                 "gravity; or none, field");
+  else if (!(g[up] < 0) || g[0] != 0 || (up == 2 && g[1] != 0))
+    reader.error(key, "k0 needs gravity straight down", "gravity along the last axis; or none, field");
+}
+
+}  // namespace
+
+void check_bodies(Reader& reader) {
+  const Scene& scene = reader.scene;
+  std::vector<bool> sound(scene.bodies.size(), false);
+  bool all_sound = !scene.bodies.empty();
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    const std::string key = shape_key(body, i);
+    const bool shaped = body.box || body.centre || !body.polygon.empty();
+    if (shaped && !reader.failed(key) && !reader.failed("grid.space") && reader.given(key) &&
+        !(body.centre && reader.failed(body_key(i) + ".radius")) &&
+        !(scene.dimension() == 3 && !body.polygon.empty()))
+      sound[i] = (body.polygon.empty() || check_polygon(body, key, reader)) && check_place(body, key, reader);
+    if (sound[i] && !reader.failed("grid") && !reader.failed(body_key(i) + ".particles_per_cell") &&
+        !holds_a_particle(body, scene.grid, scene.dimension())) {
+      reader.error(key, "empty body: no particle lies in it",
+                   "a body larger than a particle's share of a cell; a smaller grid.cell");
+      sound[i] = false;
+    }
+    if (!reader.failed(body_key(i) + ".initial")) check_initial_stress(body, i, reader);
+    all_sound = all_sound && sound[i];
+  }
+  if (reader.failed("grid")) return;
+  check_overlaps(sound, reader);
+  if (all_sound) check_size(reader);
+}
+
+}  // namespace polder::app

@@ -1,0 +1,161 @@
+#include "app/check_scene.hpp"
+
+#include <cmath>
+#include <map>
+
+#include "app/codecs.hpp"
+#include "app/geometry.hpp"
+
+namespace polder::app {
+namespace {
+
+using coupling::Boundary;
+using coupling::Scene;
+using coupling::Vector3;
+
+std::string item_key(const std::string& table, std::size_t i) {
+  return table + "." + std::to_string(i + 1);
+}
+
+// What has no name is called after its table and number; two of one name cannot be told apart in results.
+template <class T>
+void check_names_of(std::vector<T>& list, const std::string& table, Reader& reader) {
+  std::map<std::string, std::size_t> seen;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string key = item_key(table, i) + ".name";
+    if (list[i].name.empty()) list[i].name = table + "-" + std::to_string(i + 1);
+    if (reader.failed(key)) continue;
+    const auto [first, is_new] = seen.emplace(list[i].name, i);
+    if (!is_new)
+      reader.error(key, "\"" + list[i].name + "\" is also the name of " + item_key(table, first->second),
+                   "a name of its own");
+  }
+}
+
+double side_position(const Scene& scene, int side) {
+  const auto axis = static_cast<std::size_t>(side / 2);
+  return scene.grid.origin[axis] + (side % 2 ? scene.grid.size[axis] : 0);
+}
+
+bool is_load(Boundary::Kind kind) {
+  return kind == Boundary::Kind::traction || kind == Boundary::Kind::pressure;
+}
+
+bool is_in_grid(const Scene& scene, const Vector3& p) {
+  const double tolerance = 1e-6 * scene.grid.cell;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(scene.dimension()); ++i)
+    if (p[i] < scene.grid.origin[i] - tolerance ||
+        p[i] > scene.grid.origin[i] + scene.grid.size[i] + tolerance)
+      return false;
+  return true;
+}
+
+std::string point_text(const Vector3& p, int dimension) {
+  std::string t = "[";
+  for (std::size_t i = 0; i < static_cast<std::size_t>(dimension); ++i)
+    t += (i > 0 ? ", " : "") + format_number(p[i]);
+  return t + "]";
+}
+
+void check_segment(const Boundary& b, const std::string& key, Reader& reader) {
+  const Scene& scene = reader.scene;
+  const auto& [from, to] = *b.segment;
+  if (scene.dimension() == 3 && !b.side) {
+    reader.error(key, "segments in a 3d grid are not in this version", "a side of the grid");
+    return;
+  }
+  if (from == to) {
+    reader.error(key, "from and to are the same point", "two points");
+    return;
+  }
+  if (reader.failed("grid")) return;
+  for (const Vector3* p : {&from, &to}) {
+    if (is_in_grid(scene, *p)) continue;
+    reader.error(key, point_text(*p, scene.dimension()) + " lies outside the grid", "points of the grid");
+    return;
+  }
+  if (!b.side) return;
+  const auto axis = static_cast<std::size_t>(*b.side / 2);
+  const double at = side_position(scene, *b.side), tolerance = 1e-6 * scene.grid.cell;
+  if (std::abs(from[axis] - at) > tolerance || std::abs(to[axis] - at) > tolerance)
+    reader.error(key, "from and to do not lie on the side \"" + side_name(*b.side, scene.dimension()) + "\"",
+                 std::string(1, "xyz"[axis]) + " = " + format_number(at));
+}
+
+}  // namespace
+
+void check_names(Reader& reader) {
+  Scene& s = reader.scene;
+  check_names_of(s.bodies, "body", reader);
+  check_names_of(s.boundaries, "boundary", reader);
+  check_names_of(s.water_boundaries, "water", reader);
+  check_names_of(s.stages, "stage", reader);
+  check_names_of(s.measures, "measure", reader);
+}
+
+void check_boundaries(Reader& reader) {
+  const Scene& scene = reader.scene;
+  std::map<int, std::size_t> whole_side;
+  for (std::size_t i = 0; i < scene.boundaries.size(); ++i) {
+    const Boundary& b = scene.boundaries[i];
+    const std::string key = item_key("boundary", i) + ".where";
+    if (reader.failed(key) || !reader.given(key)) continue;
+    if (b.segment) check_segment(b, key, reader);
+    if (!b.side || b.segment || is_load(b.kind)) continue;
+    const auto [first, is_new] = whole_side.emplace(*b.side, i);
+    if (!is_new)
+      reader.error(key,
+                   "the " + side_name(*b.side, scene.dimension()) + " side already has " +
+                       item_key("boundary", first->second),
+                   "one constraint for each side, or for each part of it");
+  }
+}
+
+void check_measures(Reader& reader) {
+  using Kind = coupling::Measure::Kind;
+  const Scene& scene = reader.scene;
+  for (std::size_t i = 0; i < scene.measures.size(); ++i) {
+    const auto& m = scene.measures[i];
+    const std::string key = item_key("measure", i) + ".at";
+    if (m.kind == Kind::history || reader.failed("grid") || !reader.given(key) || reader.failed(key))
+      continue;
+    if (!is_in_grid(scene, m.at)) {
+      reader.error(key, point_text(m.at, scene.dimension()) + " lies outside the grid",
+                   "a point of the grid");
+      continue;
+    }
+    if (m.kind != Kind::particle || reader.failed("body")) continue;
+    // The nearest particle is followed; a point far from all soil is a mistake.
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const auto& body : scene.bodies)
+      nearest = std::min(nearest, distance(body, m.at, scene.dimension()));
+    if (nearest > scene.grid.cell)
+      reader.error(key, "no body at " + point_text(m.at, scene.dimension()),
+                   "a point in a body, or within a cell of it");
+  }
+  std::vector<std::string> names;
+  for (const auto& m : scene.measures) names.push_back(m.name);
+  for (std::size_t i = 0; i < scene.expectations.size(); ++i) {
+    const auto& e = scene.expectations[i];
+    const std::string key = item_key("expect", i) + ".measure";
+    if (reader.failed(key) || !reader.given(key)) continue;
+    bool known = false;
+    for (const std::string& n : names) known = known || n == e.measure;
+    if (!known)
+      reader.error(key, "the case has no measure \"" + e.measure + "\"" + did_you_mean(e.measure, names),
+                   names.empty() ? "[[measure]]" : join(names));
+  }
+}
+
+void check_scene(Reader& reader) {
+  check_names(reader);
+  check_bodies(reader);
+  check_water(reader);
+  check_boundaries(reader);
+  check_measures(reader);
+  const Vector3& g = reader.scene.gravity;
+  if (reader.scene.grid.space == Space::axisymmetric && g[0] != 0 && !reader.failed("gravity"))
+    reader.error("gravity", "gravity across the axis of an axisymmetric grid", "[0, gy]");
+}
+
+}  // namespace polder::app

@@ -1,0 +1,179 @@
+// Pore water against soil: what a wet formulation needs, the phreatic line, places where water enters.
+#include <algorithm>
+#include <cmath>
+
+#include "app/check_scene.hpp"
+#include "app/codecs.hpp"
+#include "app/geometry.hpp"
+
+namespace polder::app {
+namespace {
+
+using coupling::Body;
+using coupling::Scene;
+using coupling::Vector3;
+using coupling::WaterBoundary;
+
+bool is_porous(const Scene& scene, const Body& body) {
+  const auto i = static_cast<std::size_t>(body.material);
+  return i < scene.materials.size() && scene.materials[i].porosity > 0;
+}
+
+// Bodies whose shape could be read and whose material holds water.
+std::vector<const Body*> porous_bodies(const Reader& reader) {
+  std::vector<const Body*> list;
+  for (std::size_t i = 0; i < reader.scene.bodies.size(); ++i)
+    if (!reader.failed("body." + std::to_string(i + 1)) && is_porous(reader.scene, reader.scene.bodies[i]))
+      list.push_back(&reader.scene.bodies[i]);
+  return list;
+}
+
+bool bodies_are_sound(const Reader& reader) {
+  return !reader.failed("body") && !reader.failed("material") && !reader.failed("grid") &&
+         !reader.scene.bodies.empty();
+}
+
+void check_materials(Reader& reader) {
+  const Scene& scene = reader.scene;
+  bool any = false;
+  for (const auto& m : scene.materials) {
+    const std::string key = "material." + m.name;
+    any = any || m.porosity > 0;
+    if (m.porosity > 0 && m.hydraulic_conductivity == 0 && !reader.failed(key + ".conductivity") &&
+        !reader.failed(key + ".porosity"))
+      reader.error(
+          key + ".conductivity",
+          reader.given(key + ".conductivity")
+              ? "0 in a porous material with formulation \"" + scene.formulation + "\""
+              : "missing: the material is porous and the formulation is \"" + scene.formulation + "\"",
+          "hydraulic conductivity greater than 0 [m/s]; or formulation = \"dry\"");
+  }
+  if (!any && !reader.failed("material") && !scene.materials.empty())
+    reader.error("formulation",
+                 "\"" + scene.formulation + "\" without a porous material: there is nowhere for water to be",
+                 "a material with porosity greater than 0; or formulation = \"dry\"");
+}
+
+void check_phreatic_line(Reader& reader) {
+  const Scene& scene = reader.scene;
+  const auto& line = scene.water.phreatic;
+  const std::string key = "pore_water.phreatic";
+  if (line.empty() || reader.failed(key)) return;
+  if (scene.dimension() == 3) {
+    reader.error(key, "a phreatic line in a 3d grid is not in this version",
+                 "a 2D grid; or soil saturated everywhere");
+    return;
+  }
+  for (std::size_t i = 1; i < line.size(); ++i)
+    if (!(line[i][0] > line[i - 1][0])) {
+      reader.error(
+          key + "." + std::to_string(i + 1),
+          "x = " + format_number(line[i][0]) + " does not follow x = " + format_number(line[i - 1][0]),
+          "points from left to right");
+      return;
+    }
+  if (scene.gravity == Vector3{} && !reader.failed("gravity"))
+    reader.error(key, "a phreatic line without gravity", "gravity; or no phreatic line");
+  if (!bodies_are_sound(reader)) return;
+  for (const Body* body : porous_bodies(reader)) {
+    const Extent e = extent(*body, 2);
+    const double tolerance = 1e-9 * scene.grid.cell;
+    if (e.lower[0] >= line.front()[0] - tolerance && e.upper[0] <= line.back()[0] + tolerance) continue;
+    reader.error(
+        key,
+        "runs from x = " + format_number(line.front()[0]) + " to " + format_number(line.back()[0]) +
+            " and does not cover body \"" + body->name + "\"",
+        "x from " + format_number(e.lower[0]) + " or less to " + format_number(e.upper[0]) + " or more");
+  }
+}
+
+// The part of a side, as an interval along each of the other axes.
+Extent side_part(const Scene& scene, const WaterBoundary& w) {
+  Extent e{scene.grid.origin, scene.grid.origin};
+  for (std::size_t i = 0; i < 3; ++i) e.upper[i] += scene.grid.size[i];
+  if (w.from && w.to)
+    for (std::size_t i = 0; i < 3; ++i) {
+      e.lower[i] = std::min((*w.from)[i], (*w.to)[i]);
+      e.upper[i] = std::max((*w.from)[i], (*w.to)[i]);
+    }
+  return e;
+}
+
+// Whether a body has an edge (2D) or a face (3D) on the part of the side.
+bool touches(const Body& body, const Scene& scene, int side, const Extent& part) {
+  const auto axis = static_cast<std::size_t>(side / 2);
+  const auto dimension = static_cast<std::size_t>(scene.dimension());
+  const double at = scene.grid.origin[axis] + (side % 2 ? scene.grid.size[axis] : 0);
+  const double tolerance = 1e-6 * scene.grid.cell;
+  const auto overlaps = [&](const Vector3& lower, const Vector3& upper) {
+    for (std::size_t i = 0; i < dimension; ++i)
+      if (i != axis && std::min(upper[i], part.upper[i]) - std::max(lower[i], part.lower[i]) <= tolerance)
+        return false;
+    return true;
+  };
+  if (body.polygon.empty()) {
+    const Extent e = extent(body, scene.dimension());
+    const double face = side % 2 ? e.upper[axis] : e.lower[axis];
+    return body.box && std::abs(face - at) <= tolerance && overlaps(e.lower, e.upper);
+  }
+  for (std::size_t i = 0; i < body.polygon.size(); ++i) {
+    const Vector3 &a = body.polygon[i], &b = body.polygon[(i + 1) % body.polygon.size()];
+    if (std::abs(a[axis] - at) > tolerance || std::abs(b[axis] - at) > tolerance) continue;
+    const std::size_t along = 1 - axis;
+    Vector3 lower = a, upper = b;
+    if (lower[along] > upper[along]) std::swap(lower, upper);
+    if (overlaps(lower, upper)) return true;
+  }
+  return false;
+}
+
+void check_water_boundaries(Reader& reader) {
+  const Scene& scene = reader.scene;
+  if (!bodies_are_sound(reader)) return;
+  const std::vector<const Body*> bodies = porous_bodies(reader);
+  for (std::size_t i = 0; i < scene.water_boundaries.size(); ++i) {
+    const WaterBoundary& w = scene.water_boundaries[i];
+    const std::string key = "water." + std::to_string(i + 1) + ".where";
+    if (reader.failed(key) || !reader.given(key)) continue;
+    const auto axis = static_cast<std::size_t>(w.side / 2);
+    const double at = scene.grid.origin[axis] + (w.side % 2 ? scene.grid.size[axis] : 0);
+    if (w.from && w.to &&
+        (std::abs((*w.from)[axis] - at) > 1e-6 * scene.grid.cell ||
+         std::abs((*w.to)[axis] - at) > 1e-6 * scene.grid.cell)) {
+      reader.error(key, "from and to do not lie on the side \"" + side_name(w.side, scene.dimension()) + "\"",
+                   std::string(1, "xyz"[axis]) + " = " + format_number(at));
+      continue;
+    }
+    const Extent part = side_part(scene, w);
+    const bool meets = std::any_of(bodies.begin(), bodies.end(),
+                                   [&](const Body* b) { return touches(*b, scene, w.side, part); });
+    if (!meets)
+      reader.error(key, "no porous soil touches the " + side_name(w.side, scene.dimension()) + " side here",
+                   "a side of the grid on which a body of porous material lies");
+  }
+}
+
+}  // namespace
+
+void check_water(Reader& reader) {
+  const coupling::Formulation* f = coupling::find_formulation(reader.scene.formulation);
+  check_phreatic_line(reader);
+  check_water_boundaries(reader);
+  if (!f || reader.failed("formulation") || f->carrier == coupling::WaterCarrier::none) return;
+  check_materials(reader);
+}
+
+std::vector<std::string> notes(const Scene& scene) {
+  std::vector<std::string> list;
+  const coupling::Formulation* f = coupling::find_formulation(scene.formulation);
+  if (f && f->carrier == coupling::WaterCarrier::none) {
+    bool wet = !scene.water.phreatic.empty() || !scene.water_boundaries.empty() || scene.water.outside_level;
+    for (const auto& m : scene.materials) wet = wet || m.hydraulic_conductivity > 0;
+    if (wet)
+      list.push_back("formulation \"" + scene.formulation +
+                     "\" has no pore water: conductivity, pore_water and [[water]] are not used");
+  }
+  return list;
+}
+
+}  // namespace polder::app

@@ -1,0 +1,355 @@
+// Bodies with their initial state, and the boundaries that hold or load them.
+#include <cmath>
+
+#include "app/case_keys.hpp"
+#include "app/codecs.hpp"
+
+namespace polder::app {
+
+using coupling::Body;
+using coupling::Boundary;
+using coupling::InitialStress;
+using coupling::Scene;
+using coupling::TimeTable;
+using coupling::Vector3;
+using coupling::WaterBoundary;
+
+namespace {
+
+using Stress = std::array<double, 6>;
+
+// [xx, yy, zz, xy] in 2D, [xx, yy, zz, xy, yz, zx] in 3D.
+Codec<Stress> stress_components(const Dimension& dimension) {
+  const Codec<double> one = number(dimension);
+  Codec<Stress> c;
+  c.type = "[xx, yy, zz, xy], in 3D [xx, yy, zz, xy, yz, zx], each a " + one.type;
+  c.schema = Node::table();
+  c.schema.set("type", Node::of("array"));
+  c.schema.set("items", one.schema);
+  c.read = [one](const Node& n, const std::string& key, Stress& s, Reader& reader) {
+    const int d = reader.dimension();
+    const std::size_t due = d == 3 ? 6 : 4;
+    if (!n.is(Node::Kind::array) || (d > 0 && n.items.size() != due) || n.items.size() > 6) {
+      reader.error(key, "expected stress components, found " + n.description(),
+                   due == 6 ? "[xx, yy, zz, xy, yz, zx]" : "[xx, yy, zz, xy]");
+      return false;
+    }
+    Stress read{};
+    std::size_t i = 0;
+    const bool good = read_list(
+        n, key, "stress components", reader,
+        [&](const Node& item, const std::string& k) { return one.read(item, k, read[i++], reader); });
+    s = read;
+    return good;
+  };
+  c.write = [one](const Stress& s, const Scene& scene) {
+    Node n = Node::array();
+    for (std::size_t i = 0; i < (scene.dimension() == 3 ? 6u : 4u); ++i)
+      n.items.push_back(one.write(s[i], scene));
+    return n;
+  };
+  return c;
+}
+
+const Table<InitialStress>& initial_keys() {
+  using Kind = InitialStress::Kind;
+  static const Table<InitialStress> table = [] {
+    using I = InitialStress;
+    const auto k0 = [](const I& i) { return i.kind == Kind::k0; };
+    const auto field = [](const I& i) { return i.kind == Kind::field; };
+    Table<I> t;
+    t.add("stress", choice<Kind>({{"none", Kind::none}, {"k0", Kind::k0}, {"field", Kind::field}}), &I::kind,
+          "Initial effective stress: none; k0: weight of the soil above, k0 times that horizontally; field: "
+          "given.");
+    t.add("k0", numbers(dimension::kNone, kNotNegative), &I::k0,
+          "Horizontal to vertical effective stress; a list has one for each layer, from the top.")
+        .only_with("stress", "stress = \"k0\"", k0)
+        .required();
+    t.add("layers", numbers(dimension::kLength, kPositive), &I::layer_depth,
+          "Lower boundary of each layer but the last, below the body's surface.")
+        .only_with("stress", "stress = \"k0\"", k0);
+    t.add("value", stress_components(dimension::kPressure), &I::value,
+          "Effective stress at the height datum; tension positive.")
+        .only_with("stress", "stress = \"field\"", field)
+        .required();
+    t.add("gradient", stress_components(dimension::kUnitWeight), &I::gradient, "Its change with height.")
+        .only_with("stress", "stress = \"field\"", field);
+    t.add("datum", number(dimension::kLength), &I::datum, "Height at which the stress is value.")
+        .only_with("stress", "stress = \"field\"", field);
+    t.later("phreatic", "one phreatic line for all bodies: pore_water.phreatic");
+    t.check([](I& i, const std::string& path, Reader& reader) {
+      if (i.kind != Kind::k0 || reader.failed(path)) return;
+      const std::string key = key_path(path, "layers");
+      if (i.layer_depth.size() + 1 != i.k0.size())
+        reader.error(reader.given(key) ? key : key_path(path, "k0"),
+                     std::to_string(i.k0.size()) + " values of k0 and " +
+                         std::to_string(i.layer_depth.size()) + " boundaries of layers",
+                     "one boundary fewer than values of k0");
+      for (std::size_t n = 1; n < i.layer_depth.size(); ++n)
+        if (!(i.layer_depth[n] > i.layer_depth[n - 1])) {
+          reader.error(key, "the boundaries of layers do not go down", "rising depths");
+          break;
+        }
+    });
+    return t;
+  }();
+  return table;
+}
+
+// The name of a material, as its number.
+Codec<int> material_reference() {
+  Codec<int> c;
+  c.type = "name of a material";
+  c.schema = Node::table();
+  c.schema.set("type", Node::of("string"));
+  c.read = [](const Node& n, const std::string& key, int& index, Reader& reader) {
+    std::vector<std::string> names;
+    for (const auto& m : reader.scene.materials) names.push_back(m.name);
+    if (!n.is(Node::Kind::text)) {
+      reader.error(key, "expected the name of a material, found " + n.description(), join(names));
+      return false;
+    }
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (names[i] == n.text) {
+        index = static_cast<int>(i);
+        return true;
+      }
+    if (names.empty())
+      reader.error(key, "the case has no material \"" + n.text + "\"", "[material." + n.text + "]");
+    else
+      reader.error(key, "the case has no material \"" + n.text + "\"" + did_you_mean(n.text, names),
+                   join(names));
+    return false;
+  };
+  c.write = [](const int& index, const Scene& scene) {
+    const auto i = static_cast<std::size_t>(index);
+    return Node::of(i < scene.materials.size() ? scene.materials[i].name : std::string());
+  };
+  return c;
+}
+
+constexpr int kMaxParticlesPerAxis = 8;
+
+// A square number in 2D, a cube in 3D, as the number along each axis.
+Codec<int> particles_per_cell() {
+  Codec<int> c;
+  c.type = "integer";
+  c.allowed = "1, 4, 9, 16, ... 64; in 3D 1, 8, 27, ... 512";
+  c.schema = Node::table();
+  c.schema.set("type", Node::of("integer"));
+  c.schema.set("minimum", Node::of(1));
+  c.read = [allowed = c.allowed](const Node& n, const std::string& key, int& per_axis, Reader& reader) {
+    if (!n.is(Node::Kind::integer)) {
+      reader.error(key, "expected an integer, found " + n.description(), allowed);
+      return false;
+    }
+    const int d = reader.dimension();
+    for (int i = 1; i <= kMaxParticlesPerAxis; ++i)
+      if ((d != 3 && n.integer == i * i) || (d != 2 && n.integer == i * i * i)) {
+        per_axis = i;
+        return true;
+      }
+    reader.error(key, std::to_string(n.integer) + " particles do not fill a cell evenly", allowed);
+    return false;
+  };
+  c.write = [](const int& per_axis, const Scene& scene) {
+    return Node::of(ipow(per_axis, scene.dimension()));
+  };
+  return c;
+}
+
+Codec<std::array<Vector3, 2>> box() {
+  const Codec<std::vector<Vector3>> corners = points(2);
+  Codec<std::array<Vector3, 2>> c;
+  c.type = "[lower corner, upper corner] [m]";
+  c.schema = corners.schema;
+  c.read = [corners](const Node& n, const std::string& key, std::array<Vector3, 2>& b, Reader& reader) {
+    std::vector<Vector3> list;
+    if (!corners.read(n, key, list, reader)) return false;
+    if (list.size() != 2) {
+      reader.error(key, std::to_string(list.size()) + " corners", "two: the lower and the upper one");
+      return false;
+    }
+    for (std::size_t i = 0; i < static_cast<std::size_t>(reader.dimension()); ++i)
+      if (!(list[1][i] > list[0][i])) {
+        reader.error(
+            key, "empty body: the upper corner is not beyond the lower one along " + std::string(1, "xyz"[i]),
+            "[lower corner, upper corner]");
+        return false;
+      }
+    b = {list[0], list[1]};
+    return true;
+  };
+  c.write = [corners](const std::array<Vector3, 2>& b, const Scene& scene) {
+    return corners.write({b[0], b[1]}, scene);
+  };
+  return c;
+}
+
+// Exactly one shape, complete, and one the space has.
+void check_shape(Body& body, const std::string& path, Reader& reader) {
+  const auto given = [&](const char* name) { return reader.given(key_path(path, name)); };
+  const bool round = given("centre") || given("radius");
+  const int shapes = int(given("polygon")) + int(given("box")) + int(round);
+  const std::string allowed = "polygon; box; or centre and radius";
+  if (shapes == 0) reader.error(path, "the body has no shape", allowed);
+  if (shapes > 1) reader.error(path, "the body has more than one shape", allowed);
+  if (round && !given("radius"))
+    reader.error(key_path(path, "radius"), "missing", "the radius that belongs to centre");
+  const int dimension = reader.dimension();
+  if (dimension == 3 && given("polygon"))
+    reader.error(key_path(path, "polygon"), "a polygon has no volume in a 3d grid",
+                 "box; or centre and radius");
+  if (dimension == 3 && given("spin"))
+    reader.error(key_path(path, "spin"), "not in this version for a 3d grid", "velocity");
+  if (reader.scene.grid.space == Space::axisymmetric && (body.spin != 0 || body.velocity[0] != 0))
+    reader.error(key_path(path, body.spin != 0 ? "spin" : "velocity"),
+                 "the axis stands still in an axisymmetric grid", "velocity = [0, vy]");
+}
+
+}  // namespace
+
+const Table<Body>& body_keys() {
+  static const Table<Body> table = [] {
+    Table<Body> t;
+    t.add("name", identifier(), &Body::name, "Name in messages and results; default: body-1, body-2, ...");
+    t.add("material", material_reference(), &Body::material, "The material it consists of.").required();
+    t.add("polygon", points(3), &Body::polygon,
+          "Corners of a plane body, in either sense; not closed by repeating the first.");
+    t.add("box", box(), &Body::box, "Lower and upper corner of a box.");
+    t.add("centre", vector(dimension::kLength), &Body::centre, "Centre of a disk, in 3D of a ball.");
+    t.add("radius", number(dimension::kLength, kPositive), &Body::radius, "Radius of the disk or ball.")
+        .without_default()
+        .only_with("centre", "centre", [](const Body& b) { return b.centre.has_value(); });
+    t.add("particles_per_cell", particles_per_cell(), &Body::particles_per_axis, "Particles in a full cell.");
+    t.add("jitter", number(dimension::kNone, {.min = 0, .max = 0.9}), &Body::jitter,
+          "Largest random displacement of a particle, as a share of the particle spacing.");
+    t.add("seed", integer(0, 1'000'000'000), &Body::seed, "Seed of the random displacements.")
+        .only_with("jitter", "jitter greater than 0", [](const Body& b) { return b.jitter > 0; });
+    t.add("velocity", vector(dimension::kVelocity), &Body::velocity, "Initial velocity.");
+    t.add("spin", number(dimension::kAngularVelocity), &Body::spin,
+          "Initial angular velocity about the body's centroid, counter-clockwise (2D).");
+    t.add("initial", one_table(initial_keys()), &Body::stress, "Initial effective stress.");
+    t.check(check_shape);
+    return t;
+  }();
+  return table;
+}
+
+const Table<Boundary>& boundary_keys() {
+  using Kind = Boundary::Kind;
+  static const Table<Boundary> table = [] {
+    using B = Boundary;
+    const auto is = [](Kind kind) { return [kind](const B& b) { return b.kind == kind; }; };
+    Table<B> t;
+    t.add("name", identifier(), &B::name,
+          "Name in messages and results; default: boundary-1, boundary-2, ...");
+    t.add<Place>(
+         "where", place(),
+         [](const B& b) {
+           return Place{b.side, b.segment};
+         },
+         [](B& b, Place p) {
+           b.side = p.side;
+           b.segment = p.segment;
+         },
+         "Where it acts. On a segment inside the grid the soil lies to the left, seen from `from` to `to`.")
+        .required();
+    t.add("kind",
+          choice<Kind>({{"fixed", Kind::fixed},
+                        {"roller", Kind::roller},
+                        {"friction", Kind::friction},
+                        {"velocity", Kind::velocity},
+                        {"free", Kind::free},
+                        {"traction", Kind::traction},
+                        {"pressure", Kind::pressure}},
+                       {"absorbing"}),
+          &B::kind,
+          "fixed: no motion; roller: none across; friction: Coulomb; velocity: prescribed; free: nothing "
+          "holds; traction, pressure: load on the surface of the soil.")
+        .required();
+    t.add("coefficient", number(dimension::kNone, kNotNegative), &B::coefficient,
+          "Friction coefficient, the tangent of the friction angle.")
+        .required()
+        .only_with("kind", "kind = \"friction\"", is(Kind::friction));
+    t.add<Components>(
+         "velocity", components(dimension::kVelocity), [](const B& b) { return b.velocity; },
+         [](B& b, Components c) { b.velocity = std::move(c); },
+         "Prescribed velocity; components that are not given stay free.")
+        .required()
+        .only_with("kind", "kind = \"velocity\"", is(Kind::velocity));
+    t.add<Components>(
+         "traction", components(dimension::kPressure),
+         [](const B& b) {
+           Components c;
+           for (std::size_t i = 0; i < 3; ++i)
+             for (const double v : b.traction[i].value)
+               if (v != 0) c[i] = b.traction[i];
+           if (!c[0] && !c[1] && !c[2]) c[0] = b.traction[0];
+           return c;
+         },
+         [](B& b, Components c) {
+           for (std::size_t i = 0; i < 3; ++i) b.traction[i] = c[i].value_or(TimeTable{});
+         },
+         "Force on an area of the soil's surface.")
+        .required()
+        .only_with("kind", "kind = \"traction\"", is(Kind::traction));
+    t.add("pressure", time_table(dimension::kPressure), &B::pressure,
+          "Compression normal to the soil's surface.")
+        .required()
+        .only_with("kind", "kind = \"pressure\"", is(Kind::pressure));
+    return t;
+  }();
+  return table;
+}
+
+const Table<WaterBoundary>& water_keys() {
+  using Kind = WaterBoundary::Kind;
+  static const Table<WaterBoundary> table = [] {
+    using W = WaterBoundary;
+    Table<W> t;
+    t.add("name", identifier(), &W::name, "Name in messages and results; default: water-1, water-2, ...");
+    t.add<Place>(
+         "where", place(),
+         [](const W& w) {
+           Place p{w.side, std::nullopt};
+           if (w.from && w.to) p.segment = {*w.from, *w.to};
+           return p;
+         },
+         [](W& w, Place p) {
+           w.side = p.side.value_or(0);
+           w.from.reset();
+           w.to.reset();
+           if (p.segment) {
+             w.from = (*p.segment)[0];
+             w.to = (*p.segment)[1];
+           }
+         },
+         "A side of the grid, or a part of it.")
+        .required();
+    t.add("kind",
+          choice<Kind>(
+              {{"head", Kind::head}, {"pressure", Kind::pressure}, {"impermeable", Kind::impermeable}},
+              {"flux", "rain", "seepage-face"}),
+          &W::kind,
+          "head: hydrostatic below a water level; pressure: one pore pressure; impermeable: no flow.")
+        .required();
+    t.add("head", time_table(dimension::kLength), &W::value,
+          "Water level, a height in the grid's coordinates.")
+        .required()
+        .only_with("kind", "kind = \"head\"", [](const W& w) { return w.kind == Kind::head; });
+    t.add("pressure", time_table(dimension::kPressure), &W::value, "Pore pressure.")
+        .required()
+        .only_with("kind", "kind = \"pressure\"", [](const W& w) { return w.kind == Kind::pressure; });
+    t.check([](W&, const std::string& path, Reader& reader) {
+      // A place without a side is a segment inside the grid, which water boundaries do not have.
+      const std::string key = key_path(path, "where");
+      if (reader.given(key + ".from") && !reader.given(key + ".side") && !reader.failed(key))
+        reader.error(key, "water enters through the sides of the grid", "a side; or side, from and to");
+    });
+    return t;
+  }();
+  return table;
+}
+
+}  // namespace polder::app

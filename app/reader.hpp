@@ -1,0 +1,51 @@
+// The state of reading one case: the scene being filled, where each key was written, and everything that is
+// wrong. Keys are dotted paths with list elements counted from 1: "body.2.polygon".
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "app/node.hpp"
+#include "core/error.hpp"
+#include "coupling/scene.hpp"
+
+namespace polder::app {
+
+// A scene as it is before anything is read: where the defaults come from.
+const coupling::Scene& default_scene();
+
+class Reader {
+ public:
+  // file: as the user named it; files mentioned in the case are looked for beside it.
+  explicit Reader(std::string file);
+
+  coupling::Scene scene;
+
+  const std::filesystem::path& directory() const { return directory_; }
+
+  void mark(const std::string& key, const Source& source);  // the key is given, there
+  bool given(const std::string& key) const { return sources_.contains(key); }
+
+  // Something is wrong with a key; its place is that of the key, or of the nearest table around it.
+  void error(const std::string& key, const std::string& problem, const std::string& allowed = "");
+  // An error was found in this key, in a part of it or in a table around it: its value cannot be relied on.
+  bool failed(const std::string& key) const;
+
+  // Number of coordinates of points; 0 while the grid's space could not be read.
+  int dimension() const { return failed("grid.space") ? 0 : scene.dimension(); }
+
+  // All errors, in the order of the file.
+  std::vector<Diagnostic> diagnostics() const;
+
+ private:
+  std::string file_;
+  std::filesystem::path directory_;
+  std::map<std::string, Source> sources_;
+  std::set<std::string> failed_;
+  std::vector<Diagnostic> diagnostics_;
+};
+
+}  // namespace polder::app

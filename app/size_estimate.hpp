@@ -1,0 +1,20 @@
+// What a scene will need, estimated from areas and volumes before anything is allocated.
+#pragma once
+
+#include "coupling/scene.hpp"
+
+namespace polder::app {
+
+struct SizeEstimate {
+  double particles = 0;
+  double cells = 0;   // of the whole grid
+  double memory = 0;  // [bytes]
+};
+
+SizeEstimate estimate_size(const coupling::Scene& scene);
+
+// More than this is a mistake in the case, not a plan: numbers of particles and cells are 32-bit integers.
+inline constexpr double kMaxParticles = 5e8;
+inline constexpr double kMaxCells = 2e9;
+
+}  // namespace polder::app
