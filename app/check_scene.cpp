@@ -101,6 +101,12 @@ void check_boundaries(Reader& reader) {
     const std::string key = item_key("boundary", i) + ".where";
     if (reader.failed(key) || !reader.given(key)) continue;
     if (b.segment) check_segment(b, key, reader);
+    if (is_load(b.kind) && scene.dimension() == 3)
+      reader.error(item_key("boundary", i) + ".kind", "loads in a 3d grid are not in this version",
+                   "fixed, roller, friction, velocity, free");
+    else if (is_load(b.kind) && !b.segment)
+      reader.error(key, "a load needs the part of the soil's surface it acts on",
+                   "{ from = [x, y], to = [x, y] }");
     if (!b.side || b.segment || is_load(b.kind)) continue;
     const auto [first, is_new] = whole_side.emplace(*b.side, i);
     if (!is_new)

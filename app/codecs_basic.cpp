@@ -194,11 +194,7 @@ Codec<std::string> identifier() {
                                                  Reader& reader) {
     std::string read;
     if (!plain(n, key, read, reader)) return false;
-    bool good = !read.empty();
-    for (const char ch : read)
-      good = good && ((ch >= 'a' && ch <= 'z') || (ch >= 'A' && ch <= 'Z') || (ch >= '0' && ch <= '9') ||
-                      ch == '_' || ch == '-');
-    if (!good) {
+    if (!is_identifier(read)) {
       reader.error(key, "\"" + read + "\" is not a name", allowed);
       return false;
     }
@@ -210,22 +206,20 @@ Codec<std::string> identifier() {
 
 Codec<std::string> word(std::vector<std::string> options, std::vector<std::string> later) {
   Codec<std::string> c = text();
-  c.type = "one of";
-  c.allowed = join(options);
+  c.type = "one of " + join(options);
   Node names = Node::array();
   for (const std::string& o : options) names.items.push_back(Node::of(o));
   c.schema = Node::table();
   c.schema.set("enum", std::move(names));
-  c.read = [plain = c.read, options, later, allowed = c.allowed](const Node& n, const std::string& key,
-                                                                 std::string& value, Reader& reader) {
-    std::string read;
+  c.read = [options, later, allowed = join(options)](const Node& n, const std::string& key,
+                                                     std::string& value, Reader& reader) {
     if (!n.is(Node::Kind::text)) {
       reader.error(key, "expected a text, found " + n.description(), allowed);
       return false;
     }
-    read = n.text;
+    const std::string& read = n.text;
     if (std::find(options.begin(), options.end(), read) != options.end()) {
-      value = std::move(read);
+      value = read;
       return true;
     }
     if (std::find(later.begin(), later.end(), read) != later.end())
@@ -240,8 +234,7 @@ Codec<std::string> word(std::vector<std::string> options, std::vector<std::strin
 Codec<std::vector<std::string>> words(const std::vector<std::string>& options) {
   const Codec<std::string> one = word(options);
   Codec<std::vector<std::string>> c;
-  c.type = "list of";
-  c.allowed = one.allowed;
+  c.type = "list, each " + one.type;
   c.schema = schema_type("array");
   c.schema.set("items", one.schema);
   c.read = [one](const Node& n, const std::string& key, std::vector<std::string>& list, Reader& reader) {

@@ -137,7 +137,7 @@ Codec<TimeTable> time_table(const Dimension& dimension, const Range& range) {
   };
   c.write = [=](const TimeTable& t, const Scene& scene) {
     if (t.value.size() == 1 && t.time.front() == 0) return value.write(t.value.front(), scene);
-    Node n = Node::table();
+    Node n = Node::inline_table();
     n.set("time", write_list(t.time, time, scene));
     n.set("value", write_list(t.value, value, scene));
     return n;
@@ -171,7 +171,7 @@ Codec<Components> components(const Dimension& dimension) {
     return good;
   };
   c.write = [one](const Components& value, const Scene& scene) {
-    Node n = Node::table();
+    Node n = Node::inline_table();
     for (std::size_t i = 0; i < 3; ++i)
       if (value[i]) n.set(kAxes[i], one.write(*value[i], scene));
     return n;
@@ -256,7 +256,7 @@ Codec<Mobilised> mobilised(const Dimension& dimension, const Range& range) {
   };
   c.write = [=](const Mobilised& m, const Scene& scene) {
     if (m.kind == Mobilised::Kind::constant) return value.write(m.value.front(), scene);
-    Node n = Node::table();
+    Node n = Node::inline_table();
     if (m.kind == Mobilised::Kind::exponential) {
       n.set("peak", value.write(m.peak, scene));
       n.set("residual", value.write(m.residual, scene));
@@ -325,7 +325,7 @@ Codec<Place> place() {
   };
   c.write = [point](const Place& p, const Scene& scene) {
     if (p.side && !p.segment) return Node::of(side_name(*p.side, scene.dimension()));
-    Node n = Node::table();
+    Node n = Node::inline_table();
     if (p.side) n.set("side", Node::of(side_name(*p.side, scene.dimension())));
     if (p.segment) {
       n.set("from", point.write((*p.segment)[0], scene));

@@ -180,7 +180,7 @@ class Table {
         else
           e.read(*value, key, out, reader);
       } else if (e.text.required && decided && applies) {
-        reader.error(key, "missing", e.text.description());
+        reader.error(key, "missing", missing_text(e.text, key));
       }
     }
     for (const auto& c : checks_) c(out, path, reader);
@@ -223,9 +223,23 @@ class Table {
     return e;
   }
 
+  static std::string missing_text(const KeyText& text, const std::string& key) {
+    switch (text.nest) {
+      case Nest::one:
+        return "[" + key + "]";
+      case Nest::list:
+        return "[[" + key + "]]";
+      case Nest::named:
+        return "[" + key + ".NAME]";
+      case Nest::none:
+        break;
+    }
+    return text.description();
+  }
+
   template <class V>
   static bool is_unset(const Codec<V>& codec, const V& value) {
-    return codec.nest == Nest::none && is_empty(codec.write(value, default_scene()));
+    return codec.nest != Nest::one && is_empty(codec.write(value, default_scene()));
   }
 
   template <class V>
@@ -334,6 +348,11 @@ Codec<std::vector<U>> named_tables(const Table<U>& table, std::string U::*name) 
     for (const Member& m : n.members) {
       const std::string item = key + "." + m.key;
       reader.mark(item, m.key_source);
+      if (!is_identifier(m.key)) {
+        reader.error(key, "\"" + m.key + "\" is not a name", "letters, digits, _ and -");
+        good = false;
+        continue;
+      }
       U u{};
       u.*name = m.key;
       good = table.read(m.value, item, u, reader) && good;

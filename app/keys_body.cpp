@@ -82,8 +82,8 @@ const Table<InitialStress>& initial_keys() {
       const std::string key = key_path(path, "layers");
       if (i.layer_depth.size() + 1 != i.k0.size())
         reader.error(reader.given(key) ? key : key_path(path, "k0"),
-                     std::to_string(i.k0.size()) + " values of k0 and " +
-                         std::to_string(i.layer_depth.size()) + " boundaries of layers",
+"k0 and layers do not fit: " + std::to_string(i.k0.size()) + " and " +
+                         std::to_string(i.layer_depth.size()) + " entries",
                      "one boundary fewer than values of k0");
       for (std::size_t n = 1; n < i.layer_depth.size(); ++n)
         if (!(i.layer_depth[n] > i.layer_depth[n - 1])) {

@@ -1,6 +1,7 @@
 // Materials and the pore water.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "app/case_keys.hpp"
 #include "app/codecs.hpp"
@@ -15,6 +16,13 @@ using mpm::MaterialParameters;
 using mpm::Mobilised;
 
 namespace {
+
+// Six digits: what is only told, not read back.
+std::string rounded(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
 
 // A velocity (hydraulic conductivity) or an area (intrinsic permeability); the unit tells which.
 Codec<double> conductivity() {
@@ -46,7 +54,7 @@ Codec<double> conductivity() {
   };
   c.write = [](const double& value, const Scene& scene) {
     return Node::of(value).with_comment("m/s; intrinsic permeability " +
-                                        format_number(permeability_of(value, scene.water)) + " m2");
+                                        rounded(permeability_of(value, scene.water)) + " m2");
   };
   return c;
 }
@@ -175,7 +183,7 @@ const Table<MaterialParameters>& material_keys() {
     t.check([](M& m, const std::string& path, Reader& reader) {
       if (m.residual_strength > m.shear_strength && !reader.failed(path))
         reader.error(key_path(path, "residual_strength"), "exceeds shear_strength",
-                     "at most " + format_number(m.shear_strength));
+                     "at most " + format_number(m.shear_strength) + " Pa");
     });
     return t;
   }();

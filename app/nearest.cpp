@@ -36,7 +36,9 @@ int edit_distance(const std::string& first, const std::string& second) {
 
 std::string nearest_name(const std::string& word, const std::vector<std::string>& names) {
   if (word.empty() || word.size() > kLongest) return {};
-  int best = std::max(1, static_cast<int>(word.size()) / 3) + 1;
+  // One letter in three may be wrong, in words of three and more: of "z" nobody can tell what was meant.
+  if (word.size() < 3) return {};
+  int best = static_cast<int>(word.size()) / 3 + 1;
   std::string nearest;
   for (const std::string& name : names) {
     int distance = edit_distance(word, name);

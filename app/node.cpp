@@ -40,6 +40,12 @@ Node Node::array(std::vector<Node> items) {
   return n;
 }
 
+Node Node::inline_table() {
+  Node n;
+  n.on_one_line = true;
+  return n;
+}
+
 const Node* Node::find(std::string_view key) const {
   for (const Member& m : members)
     if (m.key == key) return &m.value;

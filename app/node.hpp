@@ -29,7 +29,8 @@ struct Node {
   std::vector<Node> items;
   std::vector<Member> members;  // in the order of the file
   Source source;
-  std::string comment;  // written behind the value
+  std::string comment;       // written behind the value
+  bool on_one_line = false;  // a table written as { key = value }, without a heading of its own
 
   static Node of(bool value);
   static Node of(int value);
@@ -38,6 +39,7 @@ struct Node {
   static Node of(const char* value) { return of(std::string(value)); }
   static Node array(std::vector<Node> items = {});
   static Node table() { return {}; }
+  static Node inline_table();
 
   bool is(Kind k) const { return kind == k; }
   bool is_number() const { return kind == Kind::number || kind == Kind::integer; }

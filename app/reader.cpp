@@ -14,6 +14,13 @@ std::string parent_of(const std::string& key) {
 
 }  // namespace
 
+bool is_identifier(const std::string& text) {
+  for (const char c : text)
+    if (!((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-'))
+      return false;
+  return !text.empty();
+}
+
 const coupling::Scene& default_scene() {
   static const coupling::Scene scene;
   return scene;

@@ -14,6 +14,9 @@
 
 namespace polder::app {
 
+// Whether a text can be part of keys, file names and column names: letters, digits, "_" and "-".
+bool is_identifier(const std::string& text);
+
 // A scene as it is before anything is read: where the defaults come from.
 const coupling::Scene& default_scene();
 

@@ -48,6 +48,10 @@ std::string toml_key(const std::string& key) {
   return bare ? key : quoted(key);
 }
 
+bool has_heading(const Node& n) {
+  return n.is(Node::Kind::table) && !n.on_one_line;
+}
+
 bool is_table_list(const Node& n) {
   if (!n.is(Node::Kind::array) || n.items.empty()) return false;
   for (const Node& item : n.items)
@@ -58,7 +62,7 @@ bool is_table_list(const Node& n) {
 // Whether a table is written under a heading of its own; tables inside a [[list]] stay on one line.
 void write_table(const Node& table, const std::string& path, bool inside_list, std::string& out) {
   for (const Member& m : table.members) {
-    const bool heading = !inside_list && (m.value.is(Node::Kind::table) || is_table_list(m.value));
+    const bool heading = !inside_list && (has_heading(m.value) || is_table_list(m.value));
     if (heading) continue;
     out += toml_key(m.key) + " = " + to_toml_value(m.value);
     if (!m.value.comment.empty()) out += "  # " + m.value.comment;
@@ -67,10 +71,9 @@ void write_table(const Node& table, const std::string& path, bool inside_list, s
   if (inside_list) return;
   for (const Member& m : table.members) {
     const std::string name = path.empty() ? toml_key(m.key) : path + "." + toml_key(m.key);
-    if (m.value.is(Node::Kind::table)) {
+    if (has_heading(m.value)) {
       bool only_tables = !m.value.members.empty();
-      for (const Member& inner : m.value.members)
-        only_tables = only_tables && inner.value.is(Node::Kind::table);
+      for (const Member& inner : m.value.members) only_tables = only_tables && has_heading(inner.value);
       if (!only_tables) out += "\n[" + name + "]\n";
       write_table(m.value, name, false, out);
     } else if (is_table_list(m.value)) {
