@@ -224,6 +224,10 @@ bool holds_a_particle(const Body& body, const coupling::GridSpec& grid, int dime
       if (!lattice_hits(grid.origin[i], spacing, e.lower[i], e.upper[i])) return false;
     return true;
   }
+  // With so many rows of particles the body holds one, or its size is refused elsewhere.
+  constexpr double kManyRows = 1e6;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(dimension); ++i)
+    if (!body.box && (e.upper[i] - e.lower[i]) / spacing > kManyRows) return true;
   const auto rows = [&](std::size_t axis, const auto& visit) {
     const double first = std::ceil((e.lower[axis] - grid.origin[axis]) / spacing - 0.5);
     for (double i = first;; ++i) {

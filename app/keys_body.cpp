@@ -82,7 +82,7 @@ const Table<InitialStress>& initial_keys() {
       const std::string key = key_path(path, "layers");
       if (i.layer_depth.size() + 1 != i.k0.size())
         reader.error(reader.given(key) ? key : key_path(path, "k0"),
-"k0 and layers do not fit: " + std::to_string(i.k0.size()) + " and " +
+                     "k0 and layers do not fit: " + std::to_string(i.k0.size()) + " and " +
                          std::to_string(i.layer_depth.size()) + " entries",
                      "one boundary fewer than values of k0");
       for (std::size_t n = 1; n < i.layer_depth.size(); ++n)

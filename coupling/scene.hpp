@@ -25,6 +25,7 @@ struct TimeTable {
   std::vector<double> time{0.0};  // [s]
   std::vector<double> value{0.0};
   double at(double t) const;
+  bool operator==(const TimeTable&) const = default;
 };
 
 // ---- formulation: the four switches of the table in the manual
@@ -43,6 +44,7 @@ struct Formulation {
   SaturationKind saturation = SaturationKind::saturated;
   bool available = false;  // built into this version
   std::string source;      // author, year
+  bool operator==(const Formulation&) const = default;
 };
 
 // All presets of the design's table, in its order; available ones can be run.
@@ -58,6 +60,7 @@ struct GridSpec {
   Vector3 size{};   // a whole number of cells along each axis
   double cell = 0;  // [m]
   mpm::ShapeKind shape = mpm::ShapeKind::gimp;
+  bool operator==(const GridSpec&) const = default;
 };
 
 enum class StressOrder { musl, usl };  // stresses from re-mapped momenta, or from the updated grid velocity
@@ -77,6 +80,7 @@ struct NumericsSpec {
   std::optional<double> time_step;  // fixed step [s]; warned about or refused beyond the limit
   double rhie_chow = 0.05;          // chi [-]
   double solver_tolerance = 1e-9;   // relative, pressure
+  bool operator==(const NumericsSpec&) const = default;
 };
 
 // ---- water
@@ -92,6 +96,7 @@ struct WaterSpec {
   double suction_above = 0;     // suction above it [Pa]
   enum class Initial { zero, hydrostatic, steady } initial = Initial::hydrostatic;  // pore pressure below it
   std::optional<TimeTable> outside_level;  // level of open water standing over the soil's surface [m]
+  bool operator==(const WaterSpec&) const = default;
 };
 
 // Where water may enter or leave through the sides of the grid; everywhere else the sides are impermeable.
@@ -102,6 +107,7 @@ struct WaterBoundary {
   int side = 0;                     // 2 * axis + (0 lower, 1 upper)
   std::optional<Vector3> from, to;  // part of the side, whole side if absent
   TimeTable value;                  // head: water level [m]; pressure: [Pa]
+  bool operator==(const WaterBoundary&) const = default;
 };
 
 // ---- bodies
@@ -114,6 +120,7 @@ struct InitialStress {
   // field: effective stress {xx, yy, zz, xy, yz, zx} = value + gradient * (height - datum) [Pa], [Pa/m], [m]
   std::array<double, 6> value{}, gradient{};
   double datum = 0;
+  bool operator==(const InitialStress&) const = default;
 };
 
 struct Body {
@@ -131,6 +138,7 @@ struct Body {
   Vector3 velocity{};  // [m/s]
   double spin = 0;     // 2D: angular velocity about the body's centroid [rad/s], counter-clockwise
   InitialStress stress;
+  bool operator==(const Body&) const = default;
 };
 
 // ---- mechanical boundaries
@@ -148,6 +156,7 @@ struct Boundary {
   std::array<std::optional<TimeTable>, 3> velocity;  // velocity: prescribed components [m/s], others free
   std::array<TimeTable, 3> traction;                 // traction: force per area [Pa] on the surface
   TimeTable pressure;  // pressure: normal compression [Pa]; acts to the left of the segment's normal
+  bool operator==(const Boundary&) const = default;
 };
 
 // ---- stages, measures, output
@@ -167,6 +176,7 @@ struct Stage {
   bool reset_displacement =
       false;  // at the end of the stage displacements (and plastic strains) start from zero
   bool reset_velocity = false;
+  bool operator==(const Stage&) const = default;
 };
 
 struct Measure {
@@ -177,6 +187,7 @@ struct Measure {
   std::string quantity;
   Vector3 at{};
   double every = 0;  // [s], 0 = every history line
+  bool operator==(const Measure&) const = default;
 };
 
 struct Expectation {
@@ -186,6 +197,7 @@ struct Expectation {
   std::optional<double> value;  // compared with the last value (norm "last"), or "max", "min"
   std::string norm = "l2";      // l2 | max | last | largest | smallest
   double tolerance = 0;         // relative where the reference is not 0, absolute otherwise
+  bool operator==(const Expectation&) const = default;
 };
 
 struct OutputSpec {
@@ -195,6 +207,7 @@ struct OutputSpec {
   double every = 0;               // frames [s]; 0: first and last only
   double history_every = 0;       // [s]; 0: duration / 1000
   double checkpoint_every = 600;  // wall clock [s]
+  bool operator==(const OutputSpec&) const = default;
 };
 
 struct Scene {
@@ -214,6 +227,7 @@ struct Scene {
   OutputSpec output;
 
   int dimension() const { return grid.space == Space::three_d ? 3 : 2; }
+  bool operator==(const Scene&) const = default;
 };
 
 }  // namespace polder::coupling

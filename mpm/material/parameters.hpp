@@ -24,6 +24,7 @@ struct Mobilised {
   std::vector<double> strain{0.0};  // knots, ascending (constant and piecewise_linear; constant has one)
   std::vector<double> value{0.0};   // values at the knots
   double peak = 0, residual = 0, rate = 0;  // exponential
+  bool operator==(const Mobilised&) const = default;
 };
 
 struct MaterialParameters {
@@ -59,6 +60,7 @@ struct MaterialParameters {
   double lame_lambda() const { return young * poisson / ((1 + poisson) * (1 - 2 * poisson)); }
   double wave_modulus() const { return lame_lambda() + 2 * shear_modulus(); }  // lambda + 2 G
   double dry_density() const { return (1 - porosity) * density_solid; }
+  bool operator==(const MaterialParameters&) const = default;
 };
 
 }  // namespace polder::mpm

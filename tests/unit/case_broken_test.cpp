@@ -1,4 +1,5 @@
-// Every file of tests/broken_cases must be refused with exactly the messages beside it, and nothing may be started.
+// Every file of tests/broken_cases must be refused with exactly the messages beside it, and nothing may be
+// started.
 #include <doctest/doctest.h>
 
 #include <algorithm>

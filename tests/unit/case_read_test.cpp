@@ -1,4 +1,5 @@
-// Reading good cases: values and units, the echo that reads back as the same scene, settings of the command line.
+// Reading good cases: values and units, the echo that reads back as the same scene, settings of the command
+// line.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -86,7 +87,8 @@ TEST_CASE("the minimal case has SI values and the defaults of the scene") {
 TEST_CASE("in 3D gravity points along z by default") {
   const std::string text =
       "[grid]\nspace = \"3d\"\nsize = [1, 1, 1]\ncell = 0.1\n[material.m]\nmodel = \"linear-elastic\"\n"
-      "unit_weight = \"19.62 kN/m3\"\nyoung = 1e6\npoisson = 0.2\n[[body]]\nmaterial = \"m\"\nparticles_per_cell = 27\n"
+      "unit_weight = \"19.62 kN/m3\"\nyoung = 1e6\npoisson = 0.2\n[[body]]\nmaterial = "
+      "\"m\"\nparticles_per_cell = 27\n"
       "box = [[0, 0, 0], [0.5, 0.5, 0.5]]\n[[boundary]]\nwhere = \"back\"\nkind = \"roller\"\n"
       "[[stage]]\nmode = \"dynamic\"\nduration = 1\n";
   const coupling::Scene s = read_case_text(text, "c.toml");
@@ -98,15 +100,18 @@ TEST_CASE("in 3D gravity points along z by default") {
 
 TEST_CASE("conductivity and permeability are told apart by unit") {
   const auto conductivity = [](const std::string& value) {
-    return read_case_text(kMinimal, "c.toml", {"material.sand.conductivity=" + value}).materials[0].hydraulic_conductivity;
+    return read_case_text(kMinimal, "c.toml", {"material.sand.conductivity=" + value})
+        .materials[0]
+        .hydraulic_conductivity;
   };
   CHECK(conductivity("5e-4") == 5e-4);
   CHECK(conductivity("\"0.4 m/day\"") == doctest::Approx(0.4 / 86400).epsilon(1e-14));
   // k = kappa rho g / mu = 1e-10 * 1000 * 9.81 / 1e-3
   CHECK(conductivity("\"1e-10 m2\"") == doctest::Approx(9.81e-4).epsilon(1e-14));
   const std::string thick = kMinimal + "[pore_water]\nviscosity = \"2 mPa s\"\n";
-  CHECK(read_case_text(thick, "c.toml", {"material.sand.conductivity=1e-10 m2"}).materials[0].hydraulic_conductivity ==
-        doctest::Approx(4.905e-4).epsilon(1e-14));
+  CHECK(read_case_text(thick, "c.toml", {"material.sand.conductivity=1e-10 m2"})
+            .materials[0]
+            .hydraulic_conductivity == doctest::Approx(4.905e-4).epsilon(1e-14));
 }
 
 TEST_CASE("the resolved case of every valid case reads back as the same scene") {
@@ -135,7 +140,9 @@ TEST_CASE("angles survive the echo to the last bit") {
 }
 
 TEST_CASE("settings replace keys, elements of lists by number and by name") {
-  const auto read = [](const std::vector<std::string>& settings) { return read_case_text(kMinimal, "c.toml", settings); };
+  const auto read = [](const std::vector<std::string>& settings) {
+    return read_case_text(kMinimal, "c.toml", settings);
+  };
   CHECK(read({"grid.cell=0.05"}).grid.cell == 0.05);
   CHECK(read({"material.sand.young=20 MPa"}).materials[0].young == 2e7);
   CHECK(read({"material.sand.young=\"20 MPa\""}).materials[0].young == 2e7);
@@ -151,15 +158,19 @@ TEST_CASE("wrong settings are told with the setting as their place") {
   CHECK(complaint(kMinimal, {"grid.cell=-1"}) ==
         "--set grid.cell=-1: grid.cell: -1 is out of range; allowed: length [m], greater than 0");
   CHECK(complaint(kMinimal, {"grid.cel=1"}) ==
-        "--set grid.cel=1: grid.cel: unknown key, did you mean \"cell\"?; allowed: space, origin, size, cell, shape");
+        "--set grid.cel=1: grid.cel: unknown key, did you mean \"cell\"?; allowed: space, origin, size, "
+        "cell, shape");
   CHECK(complaint(kMinimal, {"stage.rise.duration=1"}) ==
-        "--set stage.rise.duration=1: stage.rise.duration: stage has no element \"rise\"; allowed: 1 to 1, fall");
+        "--set stage.rise.duration=1: stage.rise.duration: stage has no element \"rise\"; allowed: 1 to 1, "
+        "fall");
   CHECK(complaint(kMinimal, {"stage.2.duration=1"}).find("no element \"2\"") != std::string::npos);
-  CHECK(complaint(kMinimal, {"grid.cell.x=1"}) == "--set grid.cell.x=1: grid.cell.x: grid.cell is the number 0.1, it has no parts");
+  CHECK(complaint(kMinimal, {"grid.cell.x=1"}) ==
+        "--set grid.cell.x=1: grid.cell.x: grid.cell is the number 0.1, it has no parts");
   CHECK(complaint(kMinimal, {"grid.cell"}) == "--set grid.cell: no key and value; allowed: --set key=value");
   CHECK(complaint(kMinimal, {"grid..cell=1"}).find("a part of the key is empty") != std::string::npos);
   CHECK(complaint(kMinimal, {"grid.size=[1, 2"}).find("the value is not TOML") != std::string::npos);
-  CHECK(complaint(kMinimal, {"formulation=one-layer"}).find("material.sand.conductivity: missing") != std::string::npos);
+  CHECK(complaint(kMinimal, {"formulation=one-layer"}).find("material.sand.conductivity: missing") !=
+        std::string::npos);
 }
 
 TEST_CASE("the levee has the published areas") {
@@ -185,17 +196,26 @@ TEST_CASE("damaged case files never crash the reader") {
   REQUIRE(whole.size() > 500);
   const std::string alphabet = "0123456789.-+e[]{}=\",#\n abcxyz_\xff\x00";
   std::mt19937 random(1);
-  const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
+  const auto below = [&](std::size_t n) {
+    return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
+  };
   int accepted = 0, refused = 0;
   for (int i = 0; i < 1500; ++i) {
     std::string text = whole;
     for (std::size_t edits = 1 + below(4); edits > 0; --edits) {
       const std::size_t at = below(text.size());
       switch (below(4)) {
-        case 0: text[at] = alphabet[below(alphabet.size())]; break;
-        case 1: text.erase(at, 1 + below(40)); break;
-        case 2: text.insert(at, text.substr(below(text.size()), below(60))); break;
-        default: text.insert(at, 1, alphabet[below(alphabet.size())]);
+        case 0:
+          text[at] = alphabet[below(alphabet.size())];
+          break;
+        case 1:
+          text.erase(at, 1 + below(40));
+          break;
+        case 2:
+          text.insert(at, text.substr(below(text.size()), below(60)));
+          break;
+        default:
+          text.insert(at, 1, alphabet[below(alphabet.size())]);
       }
       if (text.empty()) text = "x";
     }
