@@ -200,7 +200,7 @@ void check_shape(Body& body, const std::string& path, Reader& reader) {
   if (dimension == 3 && given("polygon"))
     reader.error(key_path(path, "polygon"), "a polygon has no volume in a 3d grid",
                  "box; or centre and radius");
-  if (dimension == 3 && given("spin"))
+  if (dimension == 3 && body.spin != 0)
     reader.error(key_path(path, "spin"), "not in this version for a 3d grid", "velocity");
   if (reader.scene.grid.space == Space::axisymmetric && (body.spin != 0 || body.velocity[0] != 0))
     reader.error(key_path(path, body.spin != 0 ? "spin" : "velocity"),
@@ -328,11 +328,15 @@ const Table<WaterBoundary>& water_keys() {
          "A side of the grid, or a part of it.")
         .required();
     t.add("kind",
-          choice<Kind>(
-              {{"head", Kind::head}, {"pressure", Kind::pressure}, {"impermeable", Kind::impermeable}},
-              {"flux", "rain", "seepage-face"}),
+          choice<Kind>({{"head", Kind::head},
+                        {"pressure", Kind::pressure},
+                        {"impermeable", Kind::impermeable},
+                        {"surface", Kind::surface}},
+                       {"flux", "rain", "seepage-face"}),
           &W::kind,
-          "head: hydrostatic below a water level; pressure: one pore pressure; impermeable: no flow.")
+          "head: hydrostatic below a water level; pressure: one pore pressure; impermeable: no flow; "
+          "surface: as on the "
+          "soil's free surface, the pressure of open water or none.")
         .required();
     t.add("head", time_table(dimension::kLength), &W::value,
           "Water level, a height in the grid's coordinates.")

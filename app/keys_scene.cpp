@@ -104,19 +104,15 @@ const Table<NumericsSpec>& numerics_keys() {
           "Cure of volumetric locking: cell-average takes one volumetric strain for a cell; automatic "
           "decides by the "
           "materials.");
-    t.add("courant", number(dimension::kNone, {.min = 0, .max = 1, .min_open = true}), &NumericsSpec::courant,
-          "Time step as a share of the stability limit.");
     t.add("time_step", number(dimension::kTime, kPositive), &NumericsSpec::time_step,
           "Fixed time step; without it the step is chosen from the limits.");
+    t.add("courant", number(dimension::kNone, {.min = 0, .max = 1, .min_open = true}), &NumericsSpec::courant,
+          "Time step as a share of the stability limit.")
+        .only_with("time_step", "time_step absent", [](const NumericsSpec& n) { return !n.time_step; });
     t.add("rhie_chow", number(dimension::kNone, {.min = 0, .max = 1}), &NumericsSpec::rhie_chow,
           "Coefficient of the term that damps checkerboard patterns of the pore pressure.");
     t.add("solver_tolerance", number(dimension::kNone, {.min = 1e-14, .max = 1e-2}),
           &NumericsSpec::solver_tolerance, "Relative residual to which the pressure system is solved.");
-    t.check([](NumericsSpec&, const std::string& path, Reader& reader) {
-      if (reader.given(key_path(path, "time_step")) && reader.given(key_path(path, "courant")))
-        reader.error(key_path(path, "time_step"), "time_step and courant contradict each other",
-                     "one of them");
-    });
     return t;
   }();
   return table;
