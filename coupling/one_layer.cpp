@@ -51,6 +51,21 @@ void pressure_push(const mpm::Skeleton<D>& skeleton, const Reals& gradient, doub
   });
 }
 
+// How undrained a step of dt is in each active cell: the inertial part of the pressure equation's
+// coefficient, (dt / rho) / (dt / rho + k / gamma_w). 1: volume changes only as the projected velocity says;
+// 0: water drains freely and the skeleton is on its own.
+template <int D>
+void undrained_share(World<D>& world, double dt) {
+  PoreWater<D>& w = *world.pore_water;
+  w.undrained.assign(world.skeleton.grid().slots(), 0.0);
+  double grains = 0;
+  for (const mpm::MaterialParameters& m : world.scene.materials) grains = std::max(grains, m.density_solid);
+  for (const fdm::ActiveCell<D>& cell : w.cells.cells()) {
+    const double n = w.porosity[cell.slot], density = (1 - n) * grains + n * world.scene.water.density;
+    w.undrained[cell.slot] = dt / (dt + density * w.darcy_mobility[cell.slot]);
+  }
+}
+
 }  // namespace
 
 template <int D>
@@ -122,7 +137,10 @@ mpm::MoveResult step_one_layer(World<D>& world, const StepInput& in, long step) 
     w.storage += in.dt * w.pressure.balance().storage;
   }
   skeleton.constrain(end, in.dt, correction, skeleton.v_new(), true);
-  if (skeleton.options().cell_average) skeleton.project_volumetric(skeleton.v_new());
+  if (in.water_flows && skeleton.options().cell_average) {
+    undrained_share(world, in.dt);
+    skeleton.set_projected_share(w.undrained);
+  }
   const mpm::MoveResult moved = skeleton.gather(in.time, in.dt);
   if (step % kWettingInterval == 0) wet_points(world);
   return moved;

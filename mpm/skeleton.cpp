@@ -150,7 +150,7 @@ void Skeleton<D>::constrain(double time, double dt, const Reals* correction, Rea
 }
 
 template <int D>
-void Skeleton<D>::project_volumetric(const Reals& v) {
+void Skeleton<D>::average_volumetric(const Reals& v) {
   const double h = grid_.spacing();
   constexpr int kCorners = ipow(2, D);
   // Mass of a corner node whose cells are about a quarter full; lighter corners say the cell is at the
@@ -162,6 +162,7 @@ void Skeleton<D>::project_volumetric(const Reals& v) {
       cell_rate_[i] = std::numeric_limits<double>::quiet_NaN();
       const Index<D> cell = grid_.index(i);
       if (!grid_.is_cell(cell)) continue;
+      const double share = projected_share_ != nullptr ? (*projected_share_)[i] : 0.0;
       double rate = 0;
       bool full = true;
       const double radius = grid_.origin()[0] + (cell[0] + 0.5) * h;
@@ -173,9 +174,10 @@ void Skeleton<D>::project_volumetric(const Reals& v) {
         full = s >= 0 &&
                sums_[static_cast<std::size_t>(s) * kSum] > enough * (hoop ? std::max(r, 0.25 * h) : 1.0);
         if (!full) break;
-        const double* u = &v[static_cast<std::size_t>(s) * kVector];
         for (int d = 0; d < D; ++d) {
-          double flux = (k >> d & 1 ? 1 : -1) * u[d] / (h * kCorners / 2);
+          const std::size_t j = static_cast<std::size_t>(s) * kVector + d;
+          const double u = share > 0 ? share * v_new_[j] + (1 - share) * v[j] : v[j];
+          double flux = (k >> d & 1 ? 1 : -1) * u / (h * kCorners / 2);
           if (hoop) flux *= d == 0 ? r / radius : 1.0;
           rate += flux;
         }
@@ -183,7 +185,6 @@ void Skeleton<D>::project_volumetric(const Reals& v) {
       if (full) cell_rate_[i] = rate;
     }
   });
-  cell_rate_set_ = true;
 }
 
 template <int D>
@@ -194,8 +195,9 @@ MoveResult Skeleton<D>::gather(double time, double dt) {
   o.flip = options_.flip;
   MoveResult r;
   const auto rate = [&](const Reals& v) -> const Reals* {
-    if (options_.cell_average && !cell_rate_set_) project_volumetric(v);
-    return cell_rate_set_ ? &cell_rate_ : nullptr;
+    if (!options_.cell_average) return nullptr;
+    average_volumetric(v);
+    return &cell_rate_;
   };
   if (options_.musl) {
     update_velocities(transfer_, options_.flip, v_old_, v_new_, &v_map_);
@@ -213,7 +215,7 @@ MoveResult Skeleton<D>::gather(double time, double dt) {
   }
   if constexpr (D == 2)
     for (SurfaceLoad& load : loads_) load.move(grid_, options_.shape, dt, v_new_);
-  cell_rate_set_ = false;
+  projected_share_ = nullptr;
   travelled_ += r.largest_displacement;
   if (!r.finite || r.largest_displacement > kSkin) {
     const ParticleSet<D>& set = *bodies_[r.fastest_body];

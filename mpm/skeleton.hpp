@@ -73,10 +73,11 @@ class Skeleton {
   // v = v_trial + correction [slots * 4] (or null) under the boundaries at `time`.
   void constrain(double time, double dt, const Reals* correction, Reals& v, bool record);
 
-  // Volumetric strain rate (D v)_c / V_c of cells whose corners all carry material into cell_rate(), NaN
-  // elsewhere, from the nodal velocities v; used by the next gather(), which otherwise does this itself with
-  // the velocities that its strains come from. Only where cell_average is chosen.
-  void project_volumetric(const Reals& v);
+  // For the next gather(), where the locking cure is on: the share of each cell's volumetric strain [slots]
+  // that comes from v_new itself, the rest coming from the velocities of all strains (re-mapped momenta under
+  // MUSL). A pressure that has just been projected out of v_new must find its own volume change in the
+  // strains; everything else is more stable with the re-mapped one. `share` must live until then.
+  void set_projected_share(const Reals& share) { projected_share_ = &share; }
 
   // Particles from v_new. Returns what the step moved; throws NumericalError naming the point when a value is
   // not finite.
@@ -92,8 +93,8 @@ class Skeleton {
     return mass_floor_;
   }  // nodes lighter than this move with their neighbours' momentum only
 
-  // Out-of-balance force of the last recorded constrain(): norm over the nodes of mass times acceleration, reactions,
-  // pore pressure and damping included; zero at rest. load_norm: of gravity and surface loads [N].
+  // Out-of-balance force of the last recorded constrain(): norm over the nodes of mass times acceleration,
+  // reactions, pore pressure and damping included; zero at rest. load_norm: of gravity and surface loads [N].
   double unbalanced_force() const { return unbalanced_; }
   double load_norm() const { return load_norm_; }
   // Sum of surface loads in the last scatter [N].
@@ -107,6 +108,9 @@ class Skeleton {
   double wave_speed(const std::vector<MaterialParameters>& materials) const;
 
  private:
+  // Volumetric strain rate (D v)_c / V_c of cells whose corners all carry material into cell_rate_, NaN
+  // elsewhere.
+  void average_volumetric(const Reals& v);
   void set_bodies();
   void allocate();
 
@@ -118,7 +122,7 @@ class Skeleton {
   std::vector<std::shared_ptr<const void>> laws_;  // one for each body
   Transfer<D> transfer_;
   Reals sums_, v_old_, v_trial_, v_new_, v_map_, cell_rate_;
-  bool cell_rate_set_ = false;
+  const Reals* projected_share_ = nullptr;
   double travelled_ = 1e9;
   double mass_floor_ = 0;
   double unbalanced_ = 0, load_norm_ = 0;
