@@ -45,6 +45,20 @@ void Skeleton<D>::allocate() {
   for (Reals* r : {&v_old_, &v_trial_, &v_new_, &v_map_}) r->assign(n * kVector, 0.0);
   cell_rate_.assign(n, std::numeric_limits<double>::quiet_NaN());
   boundaries_.update(grid_);
+  constexpr int kCorners = ipow(2, D);
+  corners_.assign(n * kCorners, -1);
+  for (int i = 0; i < grid_.slots(); ++i) {
+    const Index<D> cell = grid_.index(i);
+    int slots[kCorners];
+    bool stored = grid_.is_cell(cell);
+    for (int k = 0; k < kCorners && stored; ++k) {
+      Index<D> node = cell;
+      for (int d = 0; d < D; ++d) node[d] += k >> d & 1;
+      slots[k] = grid_.slot(node);
+      stored = slots[k] >= 0;
+    }
+    if (stored) std::copy_n(slots, kCorners, &corners_[static_cast<std::size_t>(i) * kCorners]);
+  }
 }
 
 template <int D>
@@ -160,29 +174,24 @@ void Skeleton<D>::average_volumetric(const Reals& v) {
   parallel_for(grid_.blocks(), [&](int block) {
     for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
       cell_rate_[i] = std::numeric_limits<double>::quiet_NaN();
-      const Index<D> cell = grid_.index(i);
-      if (!grid_.is_cell(cell)) continue;
+      const int* corner = &corners_[static_cast<std::size_t>(i) * kCorners];
+      if (corner[0] < 0) continue;
+      double left = 0, right = 0;  // radii of the cell's nodes
+      if (hoop) left = grid_.origin()[0] + grid_.index(i)[0] * h, right = left + h;
       const double share = projected_share_ != nullptr ? (*projected_share_)[i] : 0.0;
       double rate = 0;
       bool full = true;
-      const double radius = grid_.origin()[0] + (cell[0] + 0.5) * h;
-      for (int k = 0; k < kCorners && full; ++k) {
-        Index<D> node = cell;
-        for (int d = 0; d < D; ++d) node[d] += k >> d & 1;
-        const int s = grid_.slot(node);
-        const double r = grid_.origin()[0] + node[0] * h;
-        full = s >= 0 &&
-               sums_[static_cast<std::size_t>(s) * kSum] > enough * (hoop ? std::max(r, 0.25 * h) : 1.0);
-        if (!full) break;
+      for (int k = 0; k < kCorners; ++k) {
+        const double radius = k & 1 ? right : left;
+        full &= sums_[static_cast<std::size_t>(corner[k]) * kSum] >
+                enough * (hoop ? std::max(radius, 0.25 * h) : 1.0);
         for (int d = 0; d < D; ++d) {
-          const std::size_t j = static_cast<std::size_t>(s) * kVector + d;
+          const std::size_t j = static_cast<std::size_t>(corner[k]) * kVector + d;
           const double u = share > 0 ? share * v_new_[j] + (1 - share) * v[j] : v[j];
-          double flux = (k >> d & 1 ? 1 : -1) * u / (h * kCorners / 2);
-          if (hoop) flux *= d == 0 ? r / radius : 1.0;
-          rate += flux;
+          rate += (k >> d & 1 ? u : -u) * (hoop && d == 0 ? radius / (0.5 * (left + right)) : 1.0);
         }
       }
-      if (full) cell_rate_[i] = rate;
+      if (full) cell_rate_[i] = rate / (h * kCorners / 2);
     }
   });
 }

@@ -123,6 +123,8 @@ class Skeleton {
   Transfer<D> transfer_;
   Reals sums_, v_old_, v_trial_, v_new_, v_map_, cell_rate_;
   const Reals* projected_share_ = nullptr;
+  std::vector<int>
+      corners_;  // slots of each cell's corner nodes, x fastest; -1 where the cell is none or not stored
   double travelled_ = 1e9;
   double mass_floor_ = 0;
   double unbalanced_ = 0, load_norm_ = 0;
