@@ -44,6 +44,7 @@ void BoundarySet<D>::update(const Grid<D>& grid) {
   if (revision_ == grid.revision()) return;
   revision_ = grid.revision();
   nodes_.clear();
+  held_.assign(grid.slots(), 0);
   for (std::size_t s = 0; s < specs_.size(); ++s) {
     const BoundarySpec<D>& spec = specs_[s];
     // One rule for a node of one side: the later one.
@@ -60,6 +61,16 @@ void BoundarySet<D>::update(const Grid<D>& grid) {
                       [&](const Node& n) { return n.slot == slot && specs_[n.spec].side == spec.side; });
       if (spec.kind == BoundaryKind::free) continue;
       nodes_.push_back({slot, static_cast<int>(s), normal});
+    }
+  }
+  for (const Node& n : nodes_) {
+    const BoundarySpec<D>& spec = specs_[n.spec];
+    for (int d = 0; d < D; ++d) {
+      const bool across = (spec.kind == BoundaryKind::roller || spec.kind == BoundaryKind::friction) &&
+                          std::abs(n.normal[d]) > 1 - 1e-12;
+      if (spec.kind == BoundaryKind::fixed || across ||
+          (spec.kind == BoundaryKind::velocity && spec.prescribed[d]))
+        held_[n.slot] |= static_cast<std::uint8_t>(1u << d);
     }
   }
 }

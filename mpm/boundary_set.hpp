@@ -57,6 +57,9 @@ class BoundarySet {
   // Force of boundary i on the material in the last recorded step [N per m thickness, per radian, or N].
   const Point<D>& reaction(int i) const { return reaction_[i]; }
 
+  // Bit d of a slot: its velocity component d is held by a boundary (of friction, the normal one).
+  const std::vector<std::uint8_t>& held_components() const { return held_; }
+
  private:
   struct Node {
     int slot;
@@ -65,6 +68,7 @@ class BoundarySet {
   };
   std::vector<BoundarySpec<D>> specs_;
   std::vector<Node> nodes_;
+  std::vector<std::uint8_t> held_;
   std::vector<Point<D>> reaction_;
   std::uint64_t revision_ = 0;
   bool sticking_ = false;

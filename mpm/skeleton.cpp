@@ -9,6 +9,14 @@
 #include "core/threads.hpp"
 
 namespace polder::mpm {
+namespace {
+
+// Least mass of a node that feels forces, as a share of a full cell of the lightest soil. Only guards the
+// division: where a support ends, mass vanishes as the square of the force, so leaving such forces out any
+// earlier would lose momentum.
+constexpr double kMassFloor = 1e-26;
+
+}  // namespace
 
 template <int D>
 Skeleton<D>::Skeleton(Grid<D> grid, SkeletonOptions options, BoundarySet<D> boundaries)
@@ -27,15 +35,13 @@ ParticleSet<D>& Skeleton<D>::add_body() {
 template <int D>
 void Skeleton<D>::set_laws(const std::vector<MaterialParameters>& materials, bool plastic) {
   laws_.clear();
-  for (const auto& body : bodies_) laws_.push_back(make_law_handle(D, materials[body->material], plastic));
-  set_bodies();
-}
-
-template <int D>
-void Skeleton<D>::set_bodies() {
   transfer_.bodies.clear();
-  for (std::size_t b = 0; b < bodies_.size(); ++b)
-    transfer_.bodies.push_back({bodies_[b].get(), b < laws_.size() ? laws_[b].get() : nullptr});
+  for (const auto& body : bodies_) {
+    const MaterialParameters& m = materials[body->material];
+    laws_.push_back(make_law_handle(D, m, plastic));
+    const bool opens = plastic && m.model == MaterialModel::mohr_coulomb;
+    transfer_.bodies.push_back({body.get(), laws_.back().get(), opens ? m.bulk_modulus() : 0.0});
+  }
 }
 
 template <int D>
@@ -93,14 +99,12 @@ void Skeleton<D>::scatter(double time) {
       const Point<2> f = load.apply(grid_, options_.shape, time, sums_);
       for (int d = 0; d < 2; ++d) applied_load_[d] += f[d];
     }
-  // A node lighter than this share of a full cell's lightest soil carries no force of its own: f / m would be
-  // noise.
   if (mass_floor_ == 0) {
     double density = std::numeric_limits<double>::infinity();
     for (const auto& body : bodies_)
       for (int p = 0; p < body->slots(); ++p)
         if (body->mass[p] > 0) density = std::min(density, body->mass[p] / body->volume[p]);
-    mass_floor_ = 1e-9 * density * std::pow(grid_.spacing(), D);
+    mass_floor_ = kMassFloor * density * std::pow(grid_.spacing(), D);
   }
   parallel_for(grid_.blocks(), [&](int block) {
     for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
@@ -115,6 +119,7 @@ void Skeleton<D>::scatter(double time) {
 template <int D>
 void Skeleton<D>::predict(double dt, const Point<D>& gravity, double damping, const Reals* acceleration) {
   std::vector<double> loads(grid_.blocks(), 0.0);
+  const std::vector<std::uint8_t>& held = boundaries_.held_components();
   parallel_for(grid_.blocks(), [&](int block) {
     for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
       const double* s = &sums_[static_cast<std::size_t>(i) * kSum];
@@ -128,7 +133,9 @@ void Skeleton<D>::predict(double dt, const Point<D>& gravity, double damping, co
         double a = s[kForce + d] / s[0] + gravity[d];
         if (acceleration != nullptr) a += (*acceleration)[static_cast<std::size_t>(i) * kVector + d];
         loads[block] += s[0] * s[0] * gravity[d] * gravity[d];
-        if (damping > 0) a *= a * v[d] > 0 ? 1 - damping : a * v[d] < 0 ? 1 + damping : 1.0;
+        // Damping of a held component would only falsify its reaction.
+        if (damping > 0 && !(held[i] >> d & 1))
+          a *= a * v[d] > 0 ? 1 - damping : a * v[d] < 0 ? 1 + damping : 1.0;
         u[d] = v[d] + dt * a;
       }
     }
@@ -169,7 +176,7 @@ void Skeleton<D>::average_volumetric(const Reals& v) {
   constexpr int kCorners = ipow(2, D);
   // Mass of a corner node whose cells are about a quarter full; lighter corners say the cell is at the
   // surface.
-  const double enough = 0.1 * (mass_floor_ / 1e-9) / kCorners;
+  const double enough = 0.1 * (mass_floor_ / kMassFloor) / kCorners;
   const bool hoop = options_.space == Space::axisymmetric;
   parallel_for(grid_.blocks(), [&](int block) {
     for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {

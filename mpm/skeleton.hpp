@@ -89,9 +89,7 @@ class Skeleton {
   const Reals& v_old() const { return v_old_; }
   Reals& v_new() { return v_new_; }
   const Reals& v_new() const { return v_new_; }
-  double mass_floor() const {
-    return mass_floor_;
-  }  // nodes lighter than this move with their neighbours' momentum only
+  double mass_floor() const { return mass_floor_; }  // nodes lighter than this feel no force
 
   // Out-of-balance force of the last recorded constrain(): norm over the nodes of mass times acceleration,
   // reactions, pore pressure and damping included; zero at rest. load_norm: of gravity and surface loads [N].
@@ -111,7 +109,6 @@ class Skeleton {
   // Volumetric strain rate (D v)_c / V_c of cells whose corners all carry material into cell_rate_, NaN
   // elsewhere.
   void average_volumetric(const Reals& v);
-  void set_bodies();
   void allocate();
 
   Grid<D> grid_;

@@ -24,10 +24,13 @@ namespace polder::mpm {
 enum class AffineKind { none, apic, tpic };
 
 // One body as the kernels see it. law points to a polder::simd_*::Law<D> of the running vector level.
+// bulk_modulus of laws that open freely (a cone's apex): where no compression is left, dry points change
+// their volume only as much as their stress says; 0: volume follows the motion.
 template <int D>
 struct Body {
   ParticleSet<D>* particles = nullptr;
   const void* law = nullptr;
+  double bulk_modulus = 0;  // [Pa]
 };
 
 template <int D>

@@ -169,11 +169,11 @@ void update_velocities_of(mpm::Transfer<D>& t, double flip, const Reals& v_old, 
   });
 }
 
-// Replace the volumetric strain of a pack by that of its cell (NaN: keep), shared by the components that
-// deform.
+// Replace the volumetric part of a pack's displacement gradient by that of its cell (NaN: keep), shared by
+// the directions that deform.
 template <int D>
 POLDER_INLINE void project_volumetric(const BlockFrame<D>& frame, const double* rate, const Pack* position,
-                                      Mask real, double dt, bool hoop, Pack* strain, Pack* gradient) {
+                                      Mask real, double dt, bool hoop, Pack* gradient, Pack& hoop_strain) {
   constexpr int kTile = mpm::Transfer<D>::kTileSide;
   Mask index = Mask{};
   for (int d = D - 1; d >= 0; --d)
@@ -181,12 +181,12 @@ POLDER_INLINE void project_volumetric(const BlockFrame<D>& frame, const double* 
             (floor_to_int((position[d] - frame.origin[d]) * frame.inverse_h) - frame.first_node[d]);
   Pack cell_rate;
   for (int l = 0; l < kLanes; ++l) cell_rate[l] = rate[index[l]];
-  const int n = D == 3 || hoop ? 3 : 2;
-  Pack own = strain[0] + strain[1];
-  if (n == 3) own += strain[2];
-  const Pack correction = select(real & (cell_rate == cell_rate), (cell_rate * dt - own) * (1.0 / n), Pack{});
-  for (int k = 0; k < n; ++k) strain[k] += correction;
+  Pack own = hoop_strain;
+  for (int d = 0; d < D; ++d) own += gradient[d * D + d];
+  const double share = 1.0 / (D == 3 || hoop ? 3 : 2);
+  const Pack correction = select(real & (cell_rate == cell_rate), (cell_rate * dt - own) * share, Pack{});
   for (int d = 0; d < D; ++d) gradient[d * D + d] += correction;
+  if (hoop) hoop_strain += correction;
 }
 
 struct BlockResult {
@@ -195,33 +195,45 @@ struct BlockResult {
   bool finite = true;
 };
 
-// Strain increments of a pack from its displacement gradient; hoop strain from the radial velocity.
+// Ratio of volumes over the step, det(I + G) (1 + hoop strain), minus one.
 template <int D>
-POLDER_INLINE void strain_of(const Pack* gradient, bool hoop, Pack hoop_strain, Pack* strain) {
-  strain[0] = gradient[0];
-  strain[1] = gradient[D + 1];
-  strain[2] = D == 3 ? gradient[D * D - 1] : hoop ? hoop_strain : Pack{};
-  strain[3] = 0.5 * (gradient[1] + gradient[D]);
-  if constexpr (D == 3) {
-    strain[4] = 0.5 * (gradient[5] + gradient[7]);
-    strain[5] = 0.5 * (gradient[2] + gradient[6]);
+POLDER_INLINE Pack dilatation(const Pack* g, Pack hoop_strain) {
+  if constexpr (D == 2) {
+    const Pack plane = g[0] + g[3] + (g[0] * g[3] - g[1] * g[2]);
+    return plane + hoop_strain * (1.0 + plane);
+  } else {
+    const Pack minors = g[0] * g[4] - g[1] * g[3] + g[0] * g[8] - g[2] * g[6] + g[4] * g[8] - g[5] * g[7];
+    const Pack det = g[0] * (g[4] * g[8] - g[5] * g[7]) - g[1] * (g[3] * g[8] - g[5] * g[6]) +
+                     g[2] * (g[3] * g[7] - g[4] * g[6]);
+    return g[0] + g[4] + g[8] + minors + det;
   }
 }
 
-// Motion, volume and domain of a pack.
+// Strain increments of a pack from its gradient at the midpoint of the step.
+template <int D>
+POLDER_INLINE void strain_of(const Pack* mid, Pack hoop_strain, Pack* strain) {
+  strain[0] = mid[0];
+  strain[1] = mid[D + 1];
+  strain[2] = D == 3 ? mid[D * D - 1] : hoop_strain / (1.0 + 0.5 * hoop_strain);
+  strain[3] = 0.5 * (mid[1] + mid[D]);
+  if constexpr (D == 3) {
+    strain[4] = 0.5 * (mid[5] + mid[7]);
+    strain[5] = 0.5 * (mid[2] + mid[6]);
+  }
+}
+
+// Motion and domain of a pack. gradient: dt dv_i/dx_j.
 template <int D>
 POLDER_INLINE void move_pack(ParticleSet<D>& set, int p, Mask real, const Pack* x, const Pack* half_size,
-                             const Pack* carried, const Pack* strain, bool hoop, double dt, double h,
-                             int body, BlockResult& result) {
-  Pack trace = strain[0] + strain[1];
-  if (D == 3 || hoop) trace += strain[2];
-  store(&set.volume[p], load(&set.volume[p]) * (1.0 + trace));
+                             const Pack* carried, const Pack* gradient, double dt, double h, int body,
+                             BlockResult& result) {
   Pack fast = Pack{}, far = Pack{};
   for (int d = 0; d < D; ++d) {
     const Pack step = select(real, dt * carried[d], Pack{});
     store(&set.position[d][p], x[d] + step);
-    store(&set.half_size[d][p], clamp(half_size[d] * (1.0 + strain[d]), 0.5 * set.reference_half_size,
-                                      std::min(1.5 * set.reference_half_size, 0.5 * h)));
+    store(&set.half_size[d][p],
+          clamp(half_size[d] * (1.0 + gradient[d * D + d]), 0.5 * set.reference_half_size,
+                std::min(1.5 * set.reference_half_size, 0.5 * h)));
     far = max(far, abs(step) * (1 / h));
     fast += carried[d] * carried[d];
   }
@@ -246,9 +258,35 @@ struct MoveFrame {
   double h;
 };
 
+template <class Stress>
+POLDER_INLINE Pack mean_of(const Stress& s) {
+  return (s[0] + s[1] + s[2]) * (1.0 / 3);
+}
+
+// What the change of volume needs from before the law.
+struct BeforeLaw {
+  Pack dilatation, mean;
+};
+
+// Grains that lose contact fly apart without stress, and push as soon as they approach again. If the volume
+// followed such openings it would grow with every bump, and with it every later force V sigma. So where no
+// compression is left, the volume of dry soil follows its elastic strain only. The pores of wet soil stay
+// full: there it follows the motion.
+template <int D>
+POLDER_INLINE void update_volume(ParticleSet<D>& set, int p, double bulk_modulus, const BeforeLaw& before,
+                                 Pack mean) {
+  Pack change = before.dilatation;
+  if (bulk_modulus > 0) {
+    Mask open = mean >= -1e-9 * bulk_modulus;
+    if (!set.wet.empty()) open &= load(&set.wet[p]) == 0;
+    change = select(open, (mean - before.mean) * (1 / bulk_modulus), change);
+  }
+  store(&set.volume[p], load(&set.volume[p]) * (1.0 + change));
+}
+
 template <int D, Want kWant>
 POLDER_INLINE void gather_strain(const MoveFrame<D>& m, ParticleSet<D>& set, int p, int body, int u,
-                                 StressBatch<D>& batch, BlockResult& result) {
+                                 StressBatch<D>& batch, BeforeLaw& before, BlockResult& result) {
   const MoveOptions& o = m.options;
   const double dt = o.dt;
   const Mask real = load(&set.mass[p]) > 0;
@@ -275,14 +313,22 @@ POLDER_INLINE void gather_strain(const MoveFrame<D>& m, ParticleSet<D>& set, int
 
   // Padding points feel nothing, so that their state stays harmless.
   for (int k = 0; k < D * D; ++k) batch.gradient[u][k] = select(real, dt * q.gradient[k], Pack{});
-  strain_of<D>(batch.gradient[u], m.hoop, select(real, dt * q.b[0] / x[0], Pack{}), batch.strain[u]);
+  Pack hoop_strain = m.hoop ? select(real, dt * q.b[0] / x[0], Pack{}) : Pack{};
   if (m.rate != nullptr)
-    project_volumetric<D>(m.block, m.rate, x, real, dt, m.hoop, batch.strain[u], batch.gradient[u]);
+    project_volumetric<D>(m.block, m.rate, x, real, dt, m.hoop, batch.gradient[u], hoop_strain);
 
+  // Strain and rotation refer to the midpoint of the step: a rigid rotation, and any path there and back,
+  // strains nothing.
+  Pack mid[D * D];
+  for (int k = 0; k < D * D; ++k) mid[k] = batch.gradient[u][k];
+  midpoint_gradient(mid);
+  strain_of<D>(mid, hoop_strain, batch.strain[u]);
   for (int k = 0; k < StressBatch<D>::kStress; ++k) batch.stress[u][k] = load(&set.stress[k][p]);
   for (std::size_t k = 0; k < set.state.size(); ++k) batch.state[u][k] = load(&set.state[k][p]);
-  rotate_stress(batch.gradient[u], batch.stress[u]);
-  move_pack<D>(set, p, real, x, l, carried, batch.strain[u], m.hoop, dt, m.h, body, result);
+  rotate_stress(mid, batch.stress[u]);
+  move_pack<D>(set, p, real, x, l, carried, batch.gradient[u], dt, m.h, body, result);
+  before.dilatation = dilatation<D>(batch.gradient[u], hoop_strain);
+  before.mean = mean_of(batch.stress[u]);
 }
 
 template <int D, Want kWant>
@@ -293,11 +339,13 @@ void move_body(const MoveFrame<D>& m, int block, int body, BlockResult& result) 
   for (int first = range.first; first < range.first + range.count; first += kBatchPacks * kLanes) {
     StressBatch<D> batch;
     batch.packs = std::min(kBatchPacks, (range.first + range.count - first) / kLanes);
+    BeforeLaw before[kBatchPacks];
     for (int u = 0; u < batch.packs; ++u)
-      gather_strain<D, kWant>(m, set, first + u * kLanes, body, u, batch, result);
+      gather_strain<D, kWant>(m, set, first + u * kLanes, body, u, batch, before[u], result);
     law->update(batch);
     for (int u = 0; u < batch.packs; ++u) {
       const int p = first + u * kLanes;
+      update_volume<D>(set, p, m.transfer.bodies[body].bulk_modulus, before[u], mean_of(batch.stress[u]));
       for (int k = 0; k < StressBatch<D>::kStress; ++k) store(&set.stress[k][p], batch.stress[u][k]);
       for (std::size_t k = 0; k < set.state.size(); ++k) store(&set.state[k][p], batch.state[u][k]);
     }
