@@ -213,11 +213,22 @@ const Table<WaterSpec>& pore_water_keys() {
     t.add("initial",
           choice<W::Initial>({{"zero", W::Initial::zero},
                               {"hydrostatic", W::Initial::hydrostatic},
-                              {"steady", W::Initial::steady}}),
+                              {"steady", W::Initial::steady},
+                              {"field", W::Initial::field}}),
           &W::initial,
           "Initial pore pressure in saturated soil: zero, hydrostatic below the phreatic line (or the soil's "
-          "surface), or "
-          "the steady state of the boundaries.");
+          "surface), the steady state of the boundaries, or the field given by initial_pressure, "
+          "initial_gradient and initial_datum.");
+    const auto field = [](const W& w) { return w.initial == W::Initial::field; };
+    t.add("initial_pressure", number(dimension::kPressure), &W::initial_pressure,
+          "Initial pore pressure at the height initial_datum.")
+        .only_with("initial", "initial = \"field\"", field);
+    t.add("initial_gradient", number(dimension::kUnitWeight), &W::initial_gradient,
+          "Change of the initial pore pressure with height.")
+        .only_with("initial", "initial = \"field\"", field);
+    t.add("initial_datum", number(dimension::kLength), &W::initial_datum,
+          "Height at which the initial pore pressure is initial_pressure.")
+        .only_with("initial", "initial = \"field\"", field);
     t.add("outside_level", time_table(dimension::kLength), &W::outside_level,
           "Level of open water above the soil's surface: it loads the surface it covers.");
     t.check([](W& w, const std::string& path, Reader& reader) {

@@ -144,6 +144,12 @@ void set_initial_pressure(World<D>& world) {
     case WaterSpec::Initial::steady:
       water.pressure.steady(water.darcy_mobility);
       break;
+    case WaterSpec::Initial::field:
+      for (const fdm::ActiveCell<D>& cell : water.cells.cells())
+        p[cell.slot] = scene.water.initial_pressure +
+                       scene.water.initial_gradient *
+                           (water.cells.centre(cell.index)[D - 1] - scene.water.initial_datum);
+      break;
     case WaterSpec::Initial::hydrostatic: {
       const std::vector<BodyShape> shapes = shapes_of(scene);
       for (const fdm::ActiveCell<D>& cell : water.cells.cells()) {

@@ -16,7 +16,8 @@ void set_saturation(World<D>& world);
 template <int D>
 void set_initial_stress(World<D>& world);
 
-// Pore pressure under the present conditions: zero, hydrostatic below the phreatic line, or steady flow.
+// Pore pressure under the present conditions: zero, hydrostatic below the phreatic line, steady flow, or the
+// given field.
 // Needs the cells to be up to date.
 template <int D>
 void set_initial_pressure(World<D>& world);

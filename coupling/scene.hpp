@@ -94,7 +94,11 @@ struct WaterSpec {
       phreatic;  // polyline, soil below it is saturated; empty = all soil of porous materials is
   double saturation_above = 0;  // degree of saturation above it [-]
   double suction_above = 0;     // suction above it [Pa]
-  enum class Initial { zero, hydrostatic, steady } initial = Initial::hydrostatic;  // pore pressure below it
+  // Pore pressure below it at the start: none, at rest, steady flow under the conditions of time 0, or the
+  // given field (undrained loading before the first stage, for example).
+  enum class Initial { zero, hydrostatic, steady, field } initial = Initial::hydrostatic;
+  // field: pressure = initial_pressure + initial_gradient * (height - initial_datum) [Pa], [Pa/m], [m]
+  double initial_pressure = 0, initial_gradient = 0, initial_datum = 0;
   std::optional<TimeTable> outside_level;  // level of open water standing over the soil's surface [m]
   bool operator==(const WaterSpec&) const = default;
 };
@@ -168,7 +172,7 @@ struct Stage {
   double duration = 0;             // simulated time [s]; equilibrium: at most
   double damping = 0;              // local damping alpha [0, 1)
   bool plastic = true;             // false: materials respond elastically in this stage
-  bool sticking = false;         // true: friction boundaries hold without slip in this stage
+  bool sticking = false;           // true: friction boundaries hold without slip in this stage
   bool water_flows = true;         // false: pore pressure stays as it is
   double gravity_ramp = 0;         // time over which gravity grows from 0 to its value [s]
   double force_tolerance = 1e-3;   // equilibrium: out-of-balance force ratio
