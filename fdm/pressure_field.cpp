@@ -57,6 +57,7 @@ void PressureField<D>::refresh() {
   gradient_.build(cells_);
   for (int s = 0; s < grid.slots(); ++s)
     if (!cells_.active(s)) p_[s] = 0;
+  fill_new_cells();
   std::fill(dp_.begin(), dp_.end(), 0.0);
   node_grad_.assign(static_cast<std::size_t>(grid.slots()) * kStride, 0);
 
@@ -77,6 +78,36 @@ void PressureField<D>::refresh() {
   for (const InteriorFace<D>& f : cells_.interior_faces())
     connectivity.links.push_back({f.low, f.high, f.axis});
   solver_->analyse(connectivity);
+}
+
+// A cell without a pressure of its own takes the mean of what surrounds it, weighted with the inverse of the
+// distances: exact where pressure is linear between the last cell and the surface, so that a hydrostatic
+// state does not notice when the mask follows the surface. Cells without pressure do not count as neighbours.
+template <int D>
+void PressureField<D>::fill_new_cells() {
+  const int n_interior = static_cast<int>(cells_.interior_faces().size());
+  std::vector<std::pair<int, double>> found;
+  for (int c = 0; c < cells_.count(); ++c) {
+    const ActiveCell<D>& cell = cells_.cells()[c];
+    if (p_[cell.slot] != 0) continue;
+    double sum = 0, weight = 0;
+    for (int face : cell.faces) {
+      double p = 0, distance = cells_.grid().spacing();
+      if (face < 0) continue;
+      if (face < n_interior) {
+        const InteriorFace<D>& f = cells_.interior_faces()[face];
+        p = p_[cells_.cells()[f.low == c ? f.high : f.low].slot];
+        if (p == 0) continue;
+      } else {
+        const BoundaryFace<D>& f = cells_.boundary_faces()[face - n_interior];
+        if (!f.open) continue;
+        p = f.pressure, distance = f.distance;
+      }
+      sum += p / distance, weight += 1 / distance;
+    }
+    if (weight > 0) found.emplace_back(cell.slot, sum / weight);
+  }
+  for (const auto& [slot, p] : found) p_[slot] = p;
 }
 
 template <int D>

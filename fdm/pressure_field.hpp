@@ -80,6 +80,7 @@ class PressureField {
   // After Grid::activate returned true: moves the pressure to the new numbering.
   void carry();
   // After WaterCells::update returned true (harmless otherwise): new lists, pressure zero in inactive cells.
+  // A cell that has just become active starts between its neighbours and the prescribed pressures around it.
   void refresh();
   void set_tolerance(double tolerance) { accuracy_.tolerance = tolerance; }
 
@@ -124,6 +125,7 @@ class PressureField {
   void pin_closed_basins();
   void find_basins();
   SolveReport solve_increment();
+  void fill_new_cells();
   void require_current(std::size_t slots) const;
 
   const WaterCells<D>& cells_;

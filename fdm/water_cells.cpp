@@ -204,7 +204,7 @@ void WaterCells<D>::refresh_distances(std::span<const double> fill) {
     const double value = f.boundary < 0 ? 0 : conditions_.boundaries[f.boundary].value;
     if (kind == Kind::surface) {
       const double beyond = f.outside < 0 ? 0 : std::min(fill[f.outside], 1.0);
-      f.distance = h * std::clamp(std::min(fill[c.slot], 1.0) + beyond - 0.5, kThetaMin, kThetaMax);
+      f.distance = h * (std::min(fill[c.slot], 1.0) + beyond - 0.5);
     }
     if (f.axis == D - 1) height += f.outward * f.distance;
     switch (kind) {

@@ -1,10 +1,10 @@
 // The cells that hold pore water and the faces between them: the mesh of the pressure equation.
 //
-// A cell is active when saturated soil fills at least half of it. Its faces are
+// A cell is active when saturated soil fills at least kActiveFill of it. Its faces are
 //   interior   to another active cell,
 //   surface    to an inactive cell: the water ends at the distance theta h from the cell's centre, with
-//              theta = clamp(fill_c + fill_e - 1/2, 0.02, 1.5), so that a surface moves smoothly through the
-//              cells,
+//              theta = min(fill_c, 1) + min(fill_e, 1) - 1/2 >= kActiveFill - 1/2, so that a surface moves
+//              smoothly through the cells,
 //   side       on a side of the grid, at h/2, where a boundary condition lets water through,
 // and no face at all where a wall is. Cut cells by distance rather than by volume: Gibou et al. (2002), "A
 // second-order accurate symmetric discretization of the Poisson equation on irregular domains", with one
@@ -26,9 +26,12 @@
 
 namespace polder::fdm {
 
-inline constexpr double kActiveFill = 0.5;
-inline constexpr double kThetaMin = 0.02;
-inline constexpr double kThetaMax = 1.5;
+// With the plain threshold 1/2 the surface may lie at the centre of its cell, theta -> 0. The pressure of
+// such a cell is bound to zero while its gradient, the force on the nodes beyond, may take any value without
+// an opposite force on the nodes below: the sliver then moves up and down with slowly growing amplitude. From
+// 0.7 on theta is at least 0.2; and 0.7 is not a fill that whole particles of a lattice make (quarters,
+// ninths, sixteenths), where rounding would decide.
+inline constexpr double kActiveFill = 0.7;
 
 // Nodes of a face: the 2 (2D) or 4 (3D) corners, as slots.
 template <int D>

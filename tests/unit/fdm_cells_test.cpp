@@ -9,7 +9,7 @@ using namespace polder::fdm::test;
 
 TEST_CASE("a column has one face between neighbours, walls without faces and a surface at theta h") {
   Scene<2> s({0, 0}, {1, 12}, 0.5);
-  for (double top : {2.26, 2.4, 2.5, 2.7, 2.74}) {
+  for (double top : {2.36, 2.4, 2.5, 2.7, 2.84}) {
     s.fill_below(top);
     s.cells.update(s.fill, s.conditions);
     CHECK(s.cells.count() == 5);
@@ -21,19 +21,20 @@ TEST_CASE("a column has one face between neighbours, walls without faces and a s
     CHECK(f.boundary == -1);
     CHECK(f.distance == doctest::Approx(top - 2.25).epsilon(1e-12));  // from the centre of the fifth cell
   }
-  s.fill_below(2.2501);
+  s.fill_below(2.3499);  // the surface never comes near the centre of the last active cell
   s.cells.update(s.fill, s.conditions);
-  CHECK(s.cells.boundary_faces()[0].distance == doctest::Approx(0.02 * 0.5));  // not closer than theta_min h
+  CHECK(s.cells.count() == 4);
+  CHECK(s.cells.boundary_faces()[0].distance == doctest::Approx(2.3499 - 1.75));
 }
 
 TEST_CASE("lists are rebuilt when mask, grid or boundary geometry change, and only then") {
   Scene<2> s({0, 0}, {16, 16}, 1.0);
-  s.fill_below(5.7);
+  s.fill_below(5.75);
   CHECK(s.cells.update(s.fill, s.conditions));
   CHECK_FALSE(s.cells.update(s.fill, s.conditions));
   s.fill_below(5.9);
   CHECK_FALSE(s.cells.update(s.fill, s.conditions));
-  s.fill_below(6.6);
+  s.fill_below(6.75);
   CHECK(s.cells.update(s.fill, s.conditions));
   s.conditions.boundaries = {boundary<2>(WaterBoundary<2>::Kind::head, 0, 5.0)};
   CHECK(s.cells.update(s.fill, s.conditions));
@@ -117,4 +118,23 @@ TEST_CASE("a cell whose corner nodes are not stored stays inactive") {
   s.cells.update(s.fill, s.conditions);
   for (const auto& c : s.cells.cells()) CHECK(c.index[0] < 15);
   CHECK(s.cells.count() == 15 * 8);
+}
+
+TEST_CASE("a cell that becomes active continues a hydrostatic pressure up to the surface") {
+  Scene<2> s({0, 0}, {5, 12}, 0.5);
+  s.fill_below(2.3);
+  s.cells.update(s.fill, s.conditions);
+  PressureField<2> field(s.cells, water2());
+  field.refresh();
+  const auto hydrostatic = [&](const ActiveCell<2>& c, double top) {
+    return 9810 * (top - s.cells.centre(c.index)[1]);
+  };
+  for (const auto& c : s.cells.cells()) field.pressure()[c.slot] = hydrostatic(c, 2.4);
+  const int before = s.cells.count();
+  s.fill_below(2.4);  // the surface rises through the threshold with the pressure below already in place
+  CHECK(s.cells.update(s.fill, s.conditions));
+  field.refresh();
+  CHECK(s.cells.count() == before + 5);
+  for (const auto& c : s.cells.cells())
+    CHECK(field.pressure()[c.slot] == doctest::Approx(hydrostatic(c, 2.4)).epsilon(1e-12));
 }

@@ -234,7 +234,7 @@ TEST_CASE("both solvers give the same increment") {
 TEST_CASE("same bits with 1, 2 and 4 threads") {
   for (SolverKind kind : {SolverKind::direct, SolverKind::multigrid}) {
     const bool direct = kind == SolverKind::direct;
-    const int nx = direct ? 200 : 380;
+    const int nx = direct ? 200 : 400;
     Reals first_p, first_g;
     for (int n : {1, 2, 4}) {
       set_threads(n);
