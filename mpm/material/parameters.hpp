@@ -1,5 +1,6 @@
-// What a material is, in SI units: the plain numbers of the case file, shared by every vector level of the kernels.
-// Stress is positive in tension everywhere in Polder; strengths (cohesion, shear strength, tension cut-off) are positive.
+// What a material is, in SI units: the plain numbers of the case file, shared by every vector level of the
+// kernels. Stress is positive in tension everywhere in Polder; strengths (cohesion, shear strength, tension
+// cut-off) are positive.
 #pragma once
 
 #include <limits>
@@ -41,16 +42,17 @@ struct MaterialParameters {
   Mobilised friction;            // [rad]
   Mobilised dilation;            // [rad]
   Mobilised capillary_cohesion;  // [Pa], added to the cohesion where a particle is unsaturated
-  double tension_cutoff = std::numeric_limits<double>::infinity();  // largest tensile principal stress [Pa], limited by the apex
+  double tension_cutoff =
+      std::numeric_limits<double>::infinity();  // largest tensile principal stress [Pa], limited by the apex
 
-  // von Mises and Tresca: peak undrained shear strength at depth z below `strength_datum`, su = shear_strength +
-  // strength_gradient z, falling by softening_modulus (<= 0) with plastic deviatoric strain to residual_strength.
-  // von Mises: sqrt(J2) = su. Tresca: (sigma_1 - sigma_3)/2 = su.
-  double shear_strength = 0;      // [Pa]
-  double strength_gradient = 0;   // [Pa/m]
-  double strength_datum = 0;      // height of zero depth, along the last axis [m]
-  double residual_strength = 0;   // [Pa]
-  double softening_modulus = 0;   // d su / d kappa [Pa], <= 0
+  // von Mises and Tresca: peak undrained shear strength at depth z below `strength_datum`, su =
+  // shear_strength + strength_gradient z, falling by softening_modulus (<= 0) with plastic deviatoric strain
+  // to residual_strength. von Mises: sqrt(J2) = su. Tresca: (sigma_1 - sigma_3)/2 = su.
+  double shear_strength = 0;     // [Pa]
+  double strength_gradient = 0;  // [Pa/m]
+  double strength_datum = 0;     // height of zero depth, along the last axis [m]
+  double residual_strength = 0;  // [Pa]
+  double softening_modulus = 0;  // d su / d kappa [Pa], <= 0
 
   // Pore water.
   double hydraulic_conductivity = 0;  // saturated [m/s]
