@@ -1,7 +1,6 @@
 // From a scene to its arrays.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/error.hpp"
 #include "coupling/body_shape.hpp"
@@ -185,40 +184,6 @@ std::unique_ptr<World<D>> build_world(const Scene& scene) {
   world->skeleton.set_laws(scene.materials, true);
   world->skeleton.sort(true);
   return world;
-}
-
-SizeEstimate estimate_size(const Scene& scene) {
-  SizeEstimate e;
-  const int D = scene.dimension();
-  for (const Body& body : scene.bodies) {
-    const BodyShape shape(body, D);
-    double volume = 1;
-    if (!body.polygon.empty()) {
-      volume = 0;
-      for (std::size_t i = 0, j = body.polygon.size() - 1; i < body.polygon.size(); j = i++)
-        volume += 0.5 * (body.polygon[j][0] * body.polygon[i][1] - body.polygon[i][0] * body.polygon[j][1]);
-      volume = std::abs(volume);
-    } else if (body.box) {
-      for (int d = 0; d < D; ++d) volume *= shape.upper()[d] - shape.lower()[d];
-    } else {
-      const double r = body.radius;
-      volume = std::numbers::pi * (D == 2 ? r * r : 4.0 / 3.0 * r * r * r);
-    }
-    e.particles += volume * std::pow(body.particles_per_axis / scene.grid.cell, D);
-  }
-  // Fields of a particle, then the tiles and node fields of its share of the blocks (half-filled blocks on
-  // average).
-  const double fields = 8.0 * (4 * D + 2 + (D == 2 ? 4 : 6) + 6);
-  int per_axis = 1;
-  for (const Body& body : scene.bodies) per_axis = std::max(per_axis, body.particles_per_axis);
-  const double cells = D == 2 ? Grid<2>::kCells : Grid<3>::kCells;
-  const double block = D == 2 ? mpm::bytes_per_block<2>() : mpm::bytes_per_block<3>();
-  e.bytes = e.particles * (2 * fields + 2 * block / (cells * std::pow(per_axis, D)));
-  double blocks = 1;
-  for (int d = 0; d < D; ++d)
-    blocks *= scene.grid.size[d] / scene.grid.cell / (D == 2 ? Grid<2>::kSide : Grid<3>::kSide) + 1;
-  e.bytes += 4 * blocks;
-  return e;
 }
 
 template struct World<2>;

@@ -48,11 +48,4 @@ struct World {
 template <int D>
 std::unique_ptr<World<D>> build_world(const Scene& scene);
 
-// Estimates made before anything is allocated.
-struct SizeEstimate {
-  double particles = 0;
-  double bytes = 0;
-};
-SizeEstimate estimate_size(const Scene& scene);
-
 }  // namespace polder::coupling

@@ -95,12 +95,4 @@ void sum_tiles(Transfer<D>& transfer, int width, Reals& out);
 // A law of the running vector level; keep the handle as long as kernels use it.
 std::shared_ptr<const void> make_law_handle(int dimension, const MaterialParameters& material, bool plastic);
 
-// Bytes of tiles and sums for each occupied block, for estimates.
-template <int D>
-std::size_t bytes_per_block() {
-  using T = Transfer<D>;
-  return sizeof(double) *
-         (T::kTileNodes * T::kSum + Grid<D>::kCells * (T::kSum + 3 * T::kVector + T::kCellSum));
-}
-
 }  // namespace polder::mpm
