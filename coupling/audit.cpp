@@ -63,6 +63,14 @@ void Audit<D>::add_step(const World<D>& world, double dt, double damping, double
 }
 
 template <int D>
+void Audit<D>::rebase(const World<D>& world) {
+  const Totals t = totals(world);
+  initial_kinetic_ =
+      t.kinetic_energy - (work_.stress + work_.gravity + work_.water + work_.damping + work_.boundary);
+  for (int d = 0; d < 3; ++d) initial_momentum_[d] = t.momentum[d] - impulse_[d];
+}
+
+template <int D>
 Totals Audit<D>::totals(const World<D>& world) const {
   Totals t;
   t.runout = t.height = -1e300;

@@ -44,6 +44,10 @@ class Audit {
   double energy_loss(
       const Totals& totals) const;  // lost in transfers: work done minus kinetic energy gained [J]
 
+  // Velocities were set from outside (end of a stage): momentum and energy are counted from the present state
+  // on.
+  void rebase(const World<D>& world);
+
   // Everything that a checkpoint must keep.
   std::vector<double*> state();
 

@@ -152,6 +152,13 @@ void Simulation::Run<D>::end_stage(const std::string& by) {
     if (ended.reset_velocity)
       for (Reals& c : set.affine) std::fill(c.begin(), c.end(), 0.0);
   }
+  if (ended.reset_velocity) audit->rebase(*world);
+  if (world->pore_water && !ended.water_flows) {
+    // Pressure was held, so pores opened and closed without any account of the water: the balance starts
+    // anew.
+    const PoreWater<D>& water = *world->pore_water;
+    initial_water_volume = audit->totals(*world).water_volume + water.outflow + water.storage;
+  }
   ++stage;
   stage_start = time;
   stage_steps = 0;
