@@ -4,6 +4,7 @@
 
 #include "app/check_scene.hpp"
 #include "app/codecs.hpp"
+#include "app/digits.hpp"
 #include "app/geometry.hpp"
 #include "app/size_estimate.hpp"
 
@@ -25,9 +26,7 @@ std::string shape_key(const Body& body, std::size_t i) {
 
 // Numbers in messages: enough digits to find the place.
 std::string rounded(double value) {
-  if (value == 0) return "0";
-  const double scale = std::pow(10, 4 - std::floor(std::log10(std::abs(value))));
-  return format_number(std::round(value * scale) / scale);
+  return digits(value, 5);
 }
 
 bool check_polygon(const Body& body, const std::string& key, Reader& reader) {
@@ -104,18 +103,14 @@ void check_overlaps(const std::vector<bool>& sound, Reader& reader) {
 
 void check_size(Reader& reader) {
   const SizeEstimate size = estimate_size(reader.scene);
-  const auto coarse = [](double value) {
-    const double scale = std::pow(10, 1 - std::floor(std::log10(value)));
-    return format_number(std::round(value * scale) / scale);
-  };
   const std::string cells = "; a larger grid.cell";
   if (size.particles > kMaxParticles)
     reader.error("grid.cell",
-                 "the bodies make about " + coarse(size.particles) + " particles, " +
-                     coarse(size.memory / 1e9) + " GB of memory",
+                 "the bodies make about " + digits(size.particles, 2) + " particles, " +
+                     digits(size.memory / 1e9, 2) + " GB of memory",
                  "at most " + format_number(kMaxParticles) + " particles" + cells);
   else if (size.cells > kMaxCells)
-    reader.error("grid.cell", "the grid has about " + coarse(size.cells) + " cells",
+    reader.error("grid.cell", "the grid has about " + digits(size.cells, 2) + " cells",
                  "at most " + format_number(kMaxCells) + " cells" + cells);
 }
 

@@ -150,6 +150,16 @@ void check_measures(Reader& reader) {
     if (!known)
       reader.error(key, "the case has no measure \"" + e.measure + "\"" + did_you_mean(e.measure, names),
                    names.empty() ? "[[measure]]" : join(names));
+    std::vector<std::string> stages;
+    bool known_stage = e.from_stage.empty();
+    for (const auto& stage : scene.stages) {
+      stages.push_back(stage.name);
+      known_stage = known_stage || stage.name == e.from_stage;
+    }
+    if (!known_stage)
+      reader.error(item_key("expect", i) + ".from_stage",
+                   "the case has no stage \"" + e.from_stage + "\"" + did_you_mean(e.from_stage, stages),
+                   join(stages));
   }
 }
 

@@ -1,25 +1,18 @@
 #include "app/commands.hpp"
 
-#include <cmath>
 #include <ostream>
 
 #include "app/case.hpp"
 #include "app/check_scene.hpp"
+#include "app/digits.hpp"
+#include "app/run.hpp"
 #include "app/size_estimate.hpp"
 #include "core/error.hpp"
-#include "core/units.hpp"
 
 namespace polder::app {
 namespace {
 
 constexpr std::size_t kAnyNumber = 100000;
-
-// Two digits: what is estimated should not look exact.
-std::string coarse(double value) {
-  if (!(value > 0)) return "0";
-  const double scale = std::pow(10, 1 - std::floor(std::log10(value)));
-  return format_number(std::round(value * scale) / scale);
-}
 
 std::string count(std::size_t n, const std::string& one, const std::string& many) {
   return std::to_string(n) + " " + (n == 1 ? one : many);
@@ -36,8 +29,8 @@ int check(const Arguments& a, std::ostream& out, std::ostream& err) {
       }
       const SizeEstimate size = estimate_size(scene);
       out << file << ": valid: " << scene.formulation << ", " << count(scene.bodies.size(), "body", "bodies")
-          << ", " << count(scene.stages.size(), "stage", "stages") << ", about " << coarse(size.particles)
-          << " particles, " << coarse(size.memory / 1e6) << " MB\n";
+          << ", " << count(scene.stages.size(), "stage", "stages") << ", about " << digits(size.particles, 2)
+          << " particles, " << digits(size.memory / 1e6, 2) << " MB\n";
       for (const std::string& note : notes(scene)) out << file << ": note: " << note << '\n';
     } catch (const InputError& e) {
       err << e.what() << '\n';
@@ -52,18 +45,54 @@ int schema(const Arguments& a, std::ostream& out, std::ostream&) {
   return static_cast<int>(ExitCode::done);
 }
 
-}  // namespace
+int run(const Arguments& a, std::ostream&, std::ostream&) {
+  RunOptions o;
+  o.case_file = a.words.front();
+  o.settings = a.all("--set");
+  o.folder = a.value("--output").value_or(default_folder(o.case_file).string());
+  o.overwrite = a.has("--overwrite");
+  o.restart = a.has("--restart");
+  o.quiet = a.has("--quiet");
+  o.threads = a.integer("--threads", 1, kMostThreads).value_or(0);
+  o.until = a.time("--until");
+  if (o.overwrite && o.restart)
+    throw InputError("polder run: --overwrite and --restart contradict each other; allowed: one of them");
+  // Expectations are told in the log; it is `verify` that fails when one is missed.
+  return static_cast<int>(run_case(o).code);
+}
 
 Option set_option() {
   return {"--set", "", "KEY=VALUE", "Replace a key of the case, e.g. --set grid.cell=0.05.", true};
 }
 
 Option threads_option() {
-  return {"--threads", "", "N", "Number of threads; the results do not depend on it.", false};
+  return {"--threads", "", "N",
+          "Number of threads; the results do not depend on it. Default: all cores, fewer for a small case.",
+          false};
 }
+
+Option folder_option(const std::string& fallback) {
+  return {"--output", "-o", "DIR", "Folder of the results, default " + fallback + ".", false};
+}
+
+}  // namespace
 
 const std::vector<Command>& commands() {
   static const std::vector<Command> list{
+      {"run",
+       "CASE",
+       1,
+       1,
+       "Compute a case.",
+       {folder_option("results/NAME"),
+        set_option(),
+        threads_option(),
+        {"--restart", "", "", "Go on from the checkpoint in the folder.", false},
+        {"--until", "", "T",
+         "Stop at the simulated time T, e.g. 12.5 or \"2 h\"; --restart goes on from there.", false},
+        {"--quiet", "", "", "Say nothing but errors.", false},
+        {"--overwrite", "", "", "Replace results that are in the folder.", false}},
+       run},
       {"check",
        "CASE...",
        1,
@@ -71,6 +100,23 @@ const std::vector<Command>& commands() {
        "Read and validate case files; compute nothing.",
        {set_option(), {"--resolved", "", "", "Print the resolved case, with every default.", false}},
        check},
+      {"explain",
+       "CASE",
+       1,
+       1,
+       "What a case needs and skips and why, its size, its step limit, its run time.",
+       {set_option(), threads_option()},
+       explain_command},
+      {"verify",
+       "[CASE...]",
+       0,
+       kAnyNumber,
+       "Run cases and compare them with their expectations; without CASE those in the folder cases.",
+       {folder_option("results/verify"),
+        set_option(),
+        threads_option(),
+        {"--junit", "", "FILE", "Write the verdicts as JUnit XML, for CI services.", false}},
+       verify_command},
       {"schema",
        "",
        0,

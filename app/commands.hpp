@@ -1,6 +1,7 @@
 // The commands of the program.
 #pragma once
 
+#include <iosfwd>
 #include <vector>
 
 #include "app/command_line.hpp"
@@ -9,8 +10,9 @@ namespace polder::app {
 
 const std::vector<Command>& commands();
 
-// Options that several commands share.
-Option set_option();
-Option threads_option();
+int explain_command(const Arguments& arguments, std::ostream& out, std::ostream& err);
+int verify_command(const Arguments& arguments, std::ostream& out, std::ostream& err);
+
+inline constexpr int kMostThreads = 1024;
 
 }  // namespace polder::app

@@ -1,10 +1,10 @@
 // Materials and the pore water.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "app/case_keys.hpp"
 #include "app/codecs.hpp"
+#include "app/digits.hpp"
 #include "app/permeability.hpp"
 
 namespace polder::app {
@@ -16,13 +16,6 @@ using mpm::MaterialParameters;
 using mpm::Mobilised;
 
 namespace {
-
-// Six digits: what is only told, not read back.
-std::string rounded(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 // A velocity (hydraulic conductivity) or an area (intrinsic permeability); the unit tells which.
 Codec<double> conductivity() {
@@ -54,7 +47,7 @@ Codec<double> conductivity() {
   };
   c.write = [](const double& value, const Scene& scene) {
     return Node::of(value).with_comment("m/s; intrinsic permeability " +
-                                        rounded(permeability_of(value, scene.water)) + " m2");
+                                        digits(permeability_of(value, scene.water), 6) + " m2");
   };
   return c;
 }

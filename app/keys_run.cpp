@@ -1,10 +1,11 @@
 // Stages, measures, expectations and output.
 #include <algorithm>
-#include <fstream>
 
 #include "app/case_keys.hpp"
 #include "app/codecs.hpp"
+#include "app/columns.hpp"
 #include "coupling/quantities.hpp"
+#include "io/csv.hpp"
 
 namespace polder::app {
 
@@ -37,24 +38,6 @@ void check_quantity(Measure& m, const std::string& path, Reader& reader) {
                  join(names));
 }
 
-// The names of a CSV file's columns, without the units in brackets; empty if it has no header.
-std::vector<std::string> csv_columns(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::string line;
-  while (std::getline(file, line) && (line.empty() || line[0] == '#' || line == "\r")) {
-  }
-  if (!line.empty() && line.back() == '\r') line.pop_back();
-  std::vector<std::string> columns;
-  std::size_t begin = 0;
-  while (!line.empty()) {
-    const std::size_t comma = line.find(',', begin);
-    columns.push_back(line.substr(begin, comma - begin));
-    if (comma == std::string::npos) break;
-    begin = comma + 1;
-  }
-  return columns;
-}
-
 void check_reference(Expectation& e, const std::string& path, Reader& reader) {
   if (reader.failed(path)) return;
   const bool has_value = e.value.has_value(), has_file = !e.reference.empty();
@@ -82,15 +65,21 @@ void check_reference(Expectation& e, const std::string& path, Reader& reader) {
     reader.error(key, "no such file \"" + e.reference + "\"", "a CSV file, its path seen from the case file");
     return;
   }
-  const std::vector<std::string> columns = csv_columns(file);
-  if (columns.size() < 2)
-    reader.error(key, "\"" + e.reference + "\" has no header of two or more columns",
-                 "a CSV file with a header line");
-  else if (!e.column.empty() && std::find(columns.begin(), columns.end(), e.column) == columns.end())
-    reader.error(
-        key_path(path, "column"),
-        "\"" + e.reference + "\" has no column \"" + e.column + "\"" + did_you_mean(e.column, columns),
-        join(columns));
+  try {
+    const CsvTable table(file);
+    if (table.columns().size() < 2)
+      reader.error(key, "\"" + e.reference + "\" has only one column", "a CSV file with two columns or more");
+    else if (!e.column.empty() && find_column(table.columns(), e.column).empty())
+      reader.error(key_path(path, "column"),
+                   "\"" + e.reference + "\" has no column \"" + e.column + "\"" +
+                       did_you_mean(e.column, table.columns()),
+                   join(table.columns()));
+  } catch (const InputError& problem) {
+    reader.error(key, "\"" + e.reference + "\" cannot be used: " + problem.diagnostics().front().problem,
+                 "a CSV file of numbers");
+  } catch (const EnvironmentError&) {
+    reader.error(key, "\"" + e.reference + "\" cannot be read", "a readable CSV file");
+  }
 }
 
 }  // namespace
@@ -112,6 +101,7 @@ const Table<Stage>& stage_keys() {
     t.add("damping", number(dimension::kNone, {.min = 0, .max = 1, .max_open = true}), &Stage::damping,
           "Local damping: share of the out-of-balance force that opposes the motion.");
     t.add("plastic", boolean(), &Stage::plastic, "false: the materials respond elastically.");
+    t.add("sticking", boolean(), &Stage::sticking, "true: friction boundaries hold without slip.");
     t.add("water_flows", boolean(), &Stage::water_flows, "false: the pore pressure stays as it is.");
     t.add("gravity_ramp", number(dimension::kTime, kNotNegative), &Stage::gravity_ramp,
           "Time over which gravity grows from nothing; 0: full from the start.");
@@ -156,7 +146,7 @@ const Table<Measure>& measure_keys() {
         .required()
         .only_with("kind", "kind = \"particle\" or \"cell\"", placed);
     t.add("every", number(dimension::kTime, kNotNegative), &M::every,
-          "Time between records; 0: with every line of the history.");
+          "Time between records; the shortest of all measures counts. 0: with every line of the history.");
     t.check(check_quantity);
     return t;
   }();
@@ -177,6 +167,9 @@ const Table<Expectation>& expect_keys() {
           "l2, max: norm of the difference of two curves; last, largest, smallest: one value of the measure. "
           "With value the "
           "default is last.");
+    t.add("from_stage", text(), &E::from_stage,
+          "Stage at whose start the times of the reference begin, and before which nothing is compared; "
+          "default: the beginning of the run.");
     t.add("tolerance", number(dimension::kNone, kPositive), &E::tolerance,
           "Largest error that passes; relative where the reference is not 0, absolute otherwise.")
         .required();

@@ -6,8 +6,8 @@
 
 #include "app/commands.hpp"
 #include "app/nearest.hpp"
+#include "app/summary.hpp"
 #include "core/error.hpp"
-#include "core/simd_level.hpp"
 
 namespace polder::app {
 namespace {
@@ -35,8 +35,9 @@ std::vector<std::string> command_names() {
 }
 
 std::string version_text() {
-  return std::string("polder ") + POLDER_VERSION + " (" + POLDER_BUILD_TYPE + ", vector level " +
-         to_string(simd_level()) + ")\n";
+  const std::string commit = program_commit();
+  return "polder " + program_version() + (commit.empty() ? "" : " " + commit) + " (" + program_build() +
+         ")\n";
 }
 
 std::string usage() {

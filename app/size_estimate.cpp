@@ -1,6 +1,8 @@
 #include "app/size_estimate.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include "app/geometry.hpp"
 
@@ -16,6 +18,14 @@ constexpr double kDoublesPerCell = 24;
 constexpr double kBytesPerEmptyCell = 0.1;
 
 }  // namespace
+
+int choose_threads(int asked, const coupling::Scene& scene) {
+  if (asked > 0) return asked;
+  constexpr double kParticlesPerThread = 2000;  // about a millisecond a step
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return static_cast<int>(
+      std::clamp(estimate_size(scene).particles / kParticlesPerThread, 1.0, static_cast<double>(cores)));
+}
 
 SizeEstimate estimate_size(const coupling::Scene& scene) {
   SizeEstimate s;

@@ -200,6 +200,7 @@ struct Expectation {
   std::string column;           // of the reference; default: its second
   std::optional<double> value;  // compared with the last value (norm "last"), or "max", "min"
   std::string norm = "l2";      // l2 | max | last | largest | smallest
+  std::string from_stage;       // times of the reference count from the start of this stage; empty: from 0
   double tolerance = 0;         // relative where the reference is not 0, absolute otherwise
   bool operator==(const Expectation&) const = default;
 };

@@ -1,0 +1,83 @@
+#include "app/frames.hpp"
+
+#include <deque>
+
+#include "app/checkpoint_state.hpp"
+
+namespace polder::app {
+namespace {
+
+using coupling::FieldView;
+using coupling::Simulation;
+
+// Numbers of points, bodies and materials stay integers: single precision would round them.
+bool is_label(const std::string& name) {
+  return name == "id" || name == "body" || name == "material";
+}
+
+std::vector<FrameArray> arrays(const std::vector<FieldView>& fields,
+                               std::deque<std::vector<std::int32_t>>& labels) {
+  std::vector<FrameArray> list;
+  for (const FieldView& f : fields) {
+    if (is_label(f.name)) {
+      const auto& values = labels.emplace_back(f.values.begin(), f.values.end());
+      list.push_back({f.name, f.components, std::span<const std::int32_t>(values)});
+    } else {
+      list.push_back({f.name, f.components, std::span<const double>(f.values)});
+    }
+  }
+  return list;
+}
+
+FrameSeries series(const RunFolder& folder, const char* name, std::optional<double> keep_until) {
+  return keep_until ? FrameSeries(folder.path(), name, *keep_until) : FrameSeries(folder.path(), name);
+}
+
+}  // namespace
+
+Frames::Frames(const Simulation& s, const RunFolder& folder, std::optional<double> keep_until)
+    : tick_(s.scene().output.every) {
+  const coupling::Scene& scene = s.scene();
+  const bool wet = coupling::find_formulation(scene.formulation)->carrier != coupling::WaterCarrier::none;
+  for (const std::string& f : scene.output.fields)
+    if (wet || (f != "pore_pressure" && f != "saturation")) fields_.push_back(f);
+  soil_.emplace(series(folder, "soil", keep_until));
+  if (wet) fluid_.emplace(series(folder, "fluid", keep_until));
+}
+
+void Frames::see(const Simulation& s) {
+  const bool due = tick_.due(s.time());
+  if (due || last_ < 0) write(s);
+}
+
+void Frames::finish(const Simulation& s) {
+  if (last_ < s.time()) write(s);
+}
+
+void Frames::write(const Simulation& s) {
+  std::deque<std::vector<std::int32_t>> labels;
+  const coupling::PointFrame points = s.points(fields_);
+  Frame soil;
+  soil.time = s.time();
+  soil.points = points.positions;
+  soil.point_data = arrays(points.fields, labels);
+  soil_->write(soil);
+  if (fluid_) {
+    const coupling::CellFrame cells = s.water_cells();
+    Frame fluid;
+    fluid.time = s.time();
+    fluid.points = cells.vertices;
+    fluid.shape = cells.corners_per_cell == 8 ? CellShape::hexahedron : CellShape::quad;
+    fluid.cells = cells.corners;
+    fluid.cell_data = arrays(cells.fields, labels);
+    fluid_->write(fluid);
+  }
+  last_ = s.time();
+}
+
+void Frames::visit(CheckpointVisitor& v) {
+  v.number("output/frames", tick_.count());
+  v.number("output/last_frame", last_);
+}
+
+}  // namespace polder::app

@@ -1,0 +1,36 @@
+// Running a case: from its file to a folder of results.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/expectations.hpp"
+#include "core/error.hpp"
+
+namespace polder::app {
+
+struct RunOptions {
+  std::string case_file;
+  std::vector<std::string> settings;  // "key=value"
+  std::filesystem::path folder;       // of the results
+  bool overwrite = false, restart = false, quiet = false;
+  int threads = 0;              // 0: see choose_threads()
+  std::optional<double> until;  // simulated time [s] at which to stop
+};
+
+struct RunOutcome {
+  ExitCode code = ExitCode::done;
+  double wall_seconds = 0;
+  std::vector<ExpectationResult> expectations;  // of a completed run
+};
+
+// Throws InputError and EnvironmentError before anything has been computed; what happens later is in the
+// outcome, the log and summary.json.
+RunOutcome run_case(const RunOptions& options);
+
+// Where the results of a case go unless the user says otherwise: results/NAME.
+std::filesystem::path default_folder(const std::string& case_file);
+
+}  // namespace polder::app

@@ -1,0 +1,262 @@
+// Running cases: the folder, restarts and interruptions to the same bits, threads, verdicts, exit codes.
+#include <doctest/doctest.h>
+
+#include <unistd.h>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/expectations.hpp"
+#include "app/program.hpp"
+#include "app/ticker.hpp"
+#include "core/error.hpp"
+#include "io/checkpoint.hpp"
+
+namespace fs = std::filesystem;
+using polder::app::curve_error;
+using polder::app::Ticker;
+
+namespace {
+
+const std::string kColumn = std::string(POLDER_SOURCE_DIR) + "/tests/valid_cases/column.toml";
+
+// A folder of its own for each test, gone afterwards.
+class Scratch {
+ public:
+  Scratch() {
+    static int count = 0;
+    path_ = fs::temp_directory_path() /
+            ("polder_run_test_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
+    fs::create_directories(path_);
+  }
+  ~Scratch() { fs::remove_all(path_); }
+  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  fs::path path_;
+};
+
+struct Result {
+  int code;
+  std::string out, err;
+};
+
+Result polder_program(const std::vector<std::string>& words) {
+  std::ostringstream out, err;
+  const int code = polder::app::run_program(words, out, err);
+  return {code, out.str(), err.str()};
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  REQUIRE_MESSAGE(file.good(), "missing: " << path);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+nlohmann::json summary_of(const std::string& folder) {
+  return nlohmann::json::parse(text_of(folder + "/summary.json"));
+}
+
+// Every number of the state, as raw bytes.
+void check_same_state(const std::string& a, const std::string& b) {
+  const polder::CheckpointReader first(a + "/checkpoint.h5"), second(b + "/checkpoint.h5");
+  REQUIRE(first.names() == second.names());
+  int compared = 0;
+  for (const std::string& name : first.names()) {
+    // How far the tables have been written depends on where a run was stopped.
+    if (name.starts_with("output/")) continue;
+    CAPTURE(name);
+    try {
+      const auto x = first.array<double>(name), y = second.array<double>(name);
+      CHECK(x.size() == y.size());
+      CHECK(std::equal(x.begin(), x.end(), y.begin(), y.end(),
+                       [](double u, double v) { return u == v || (std::isnan(u) && std::isnan(v)); }));
+      ++compared;
+    } catch (const polder::EnvironmentError&) {  // integers
+    }
+  }
+  CHECK(compared > 20);
+}
+
+}  // namespace
+
+TEST_CASE("a run fills its folder") {
+  const Scratch scratch;
+  const std::string folder = scratch / "column";
+  REQUIRE(polder_program({"run", kColumn, "-o", folder, "--quiet"}).code == 0);
+  for (const char* file :
+       {"case.toml", "log.txt", "history.csv", "probes.csv", "phreatic.csv", "summary.json", "checkpoint.h5",
+        "soil.hdf.series", "fluid.hdf.series", "soil_000000.hdf", "fluid_000005.hdf"})
+    CHECK_MESSAGE(fs::exists(folder + "/" + file), file);
+  CHECK_FALSE(fs::exists(folder + "/soil_000006.hdf"));
+  const auto summary = summary_of(folder);
+  CHECK(summary.at("status") == "completed");
+  CHECK(summary.at("particles").at("solid") == 80);
+  CHECK(summary.at("stages").at(0).at("ended_by") == "duration");
+  CHECK(summary.at("stages").at(0).at("time").get<double>() == doctest::Approx(0.05));
+  CHECK(std::abs(summary.at("conservation").at("solid_mass").get<double>()) < 1e-12);
+  CHECK(summary.at("expectations").at(0).at("pass") == true);
+  CHECK(summary.at("measures").at("foot").get<double>() > 5000);
+  CHECK(summary.at("measures").at("top").get<double>() > 0);
+  // The resolved case runs by itself to the same numbers.
+  const std::string again = scratch / "again";
+  REQUIRE(polder_program({"run", folder + "/case.toml", "-o", again, "--quiet"}).code == 0);
+  CHECK(text_of(again + "/history.csv") == text_of(folder + "/history.csv"));
+  // Results are not overwritten by accident.
+  const Result twice = polder_program({"run", kColumn, "-o", folder, "--quiet"});
+  CHECK(twice.code == 2);
+  CHECK(twice.err.find("--overwrite") != std::string::npos);
+  CHECK(polder_program({"run", kColumn, "-o", folder, "--quiet", "--overwrite"}).code == 0);
+}
+
+TEST_CASE("a run that is stopped and restarted ends with the same bits") {
+  const Scratch scratch;
+  const std::string whole = scratch / "whole", parts = scratch / "parts";
+  REQUIRE(polder_program({"run", kColumn, "-o", whole, "--quiet"}).code == 0);
+  REQUIRE(polder_program({"run", kColumn, "-o", parts, "--quiet", "--until", "0.0173"}).code == 0);
+  CHECK(summary_of(parts).at("time").get<double>() < 0.02);
+  REQUIRE(polder_program({"run", kColumn, "-o", parts, "--quiet", "--restart", "--until", "31 ms"}).code ==
+          0);
+  REQUIRE(polder_program({"run", kColumn, "-o", parts, "--quiet", "--restart"}).code == 0);
+  check_same_state(whole, parts);
+  CHECK(summary_of(parts).at("steps") == summary_of(whole).at("steps"));
+  // A restart is refused for another case.
+  const Result other = polder_program(
+      {"run", kColumn, "-o", parts, "--quiet", "--restart", "--set", "material.sand.young=2e7"});
+  CHECK(other.code == 2);
+}
+
+TEST_CASE("an interrupted run writes a checkpoint, and its tables go on as if nothing had happened") {
+  const Scratch scratch;
+  const std::string whole = scratch / "whole", parts = scratch / "parts";
+  const std::vector<std::string> longer{"run", kColumn, "--quiet", "--set", "stage.settle.duration=0.3",
+                                        "-o"};
+  const auto run = [&](const std::string& folder, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words = longer;
+    words.push_back(folder);
+    words.insert(words.end(), more.begin(), more.end());
+    return polder_program(words).code;
+  };
+  REQUIRE(run(whole) == 0);
+  // The signal comes once the run has begun to write its history, at whatever step that is.
+  std::thread killer([&] {
+    for (int i = 0; i < 5000 && !fs::exists(parts + "/soil_000001.hdf"); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::raise(SIGTERM);
+  });
+  const int code = run(parts);
+  killer.join();
+  REQUIRE(code == 130);
+  CHECK(summary_of(parts).at("status") == "interrupted");
+  REQUIRE(run(parts, {"--restart"}) == 0);
+  check_same_state(whole, parts);
+  CHECK(text_of(parts + "/history.csv") == text_of(whole + "/history.csv"));
+  CHECK(text_of(parts + "/probes.csv") == text_of(whole + "/probes.csv"));
+  CHECK(text_of(parts + "/soil.hdf.series") == text_of(whole + "/soil.hdf.series"));
+}
+
+TEST_CASE("the number of threads does not change a bit") {
+  const Scratch scratch;
+  for (const char* n : {"1", "2", "4"})
+    REQUIRE(polder_program({"run", kColumn, "-o", scratch / n, "--quiet", "--threads", n}).code == 0);
+  check_same_state(scratch / "1", scratch / "2");
+  check_same_state(scratch / "1", scratch / "4");
+}
+
+TEST_CASE("what breaks down ends with 3 and says so") {
+  const Scratch scratch;
+  const std::string folder = scratch / "failed";
+  const Result r =
+      polder_program({"run", kColumn, "-o", folder, "--quiet", "--set", "stage.settle.mode=equilibrium"});
+  CHECK(r.code == 3);
+  const auto summary = summary_of(folder);
+  CHECK(summary.at("status") == "failed");
+  CHECK(summary.at("message").get<std::string>().find("did not come to rest") != std::string::npos);
+}
+
+TEST_CASE("bad input starts nothing") {
+  const Scratch scratch;
+  for (const auto& entry : fs::directory_iterator(std::string(POLDER_SOURCE_DIR) + "/tests/broken_cases")) {
+    if (entry.path().extension() != ".toml") continue;
+    const std::string folder = scratch / entry.path().stem().string();
+    CHECK(polder_program({"run", entry.path().string(), "-o", folder}).code == 2);
+    CHECK_FALSE(fs::exists(folder));
+  }
+  const std::string folder = scratch / "never";
+  CHECK(polder_program({"run", kColumn, "-o", folder, "--threads", "none"}).code == 2);
+  CHECK(polder_program({"run", kColumn, "-o", folder, "--restart"}).code == 2);
+  CHECK(polder_program({"run", kColumn, "-o", folder, "--restart", "--overwrite"}).code == 2);
+  CHECK(polder_program({"run", kColumn, "-o", folder, "--set", "measure.mass.quantity=mass_error"}).code ==
+        2);
+}
+
+TEST_CASE("verify tells what passes and what misses") {
+  const Scratch scratch;
+  const std::string report = scratch / "report.xml";
+  const Result pass = polder_program({"verify", kColumn, "-o", scratch / "v", "--junit", report});
+  CHECK(pass.code == 0);
+  CHECK(pass.out.find("pass") != std::string::npos);
+  CHECK(text_of(report).find("tests=\"1\" failures=\"0\" errors=\"0\"") != std::string::npos);
+  const Result miss = polder_program(
+      {"verify", kColumn, "-o", scratch / "v", "--junit", report, "--set", "expect.1.value=1"});
+  CHECK(miss.code == 1);
+  CHECK(miss.out.find("MISS") != std::string::npos);
+  CHECK(text_of(report).find("failures=\"1\"") != std::string::npos);
+  const Result broken =
+      polder_program({"verify", kColumn, "-o", scratch / "v", "--set", "stage.settle.mode=equilibrium"});
+  CHECK(broken.code == 3);
+  CHECK(polder_program({"verify", std::string(POLDER_SOURCE_DIR) + "/tests/valid_cases/minimal.toml"}).code ==
+        2);
+}
+
+TEST_CASE("explain tells the plan") {
+  const Result r = polder_program({"explain", kColumn, "--threads", "1"});
+  CHECK(r.code == 0);
+  for (const char* part : {"formulation   one-layer", "particles     80 in 1 body", "step limit",
+                           "(skeleton wave)", "settle: dynamic", "discrete elements", "run time      about"})
+    CHECK_MESSAGE(r.out.find(part) != std::string::npos, part);
+  CHECK(polder_program({"explain", kColumn, "--set", "formulation=dry"}).out.find("pore water  none") !=
+        std::string::npos);
+}
+
+TEST_CASE("errors of curves") {
+  const std::vector<double> t{0, 1, 2}, r{0, 1, 2};
+  CHECK(curve_error("l2", t, r, t, r) == 0);
+  // m = 1.1 r: 10 % in both norms.
+  const std::vector<double> m{0, 1.1, 2.2};
+  CHECK(curve_error("l2", t, m, t, r) == doctest::Approx(0.1));
+  CHECK(curve_error("max", t, m, t, r) == doctest::Approx(0.1));
+  // Against zero the error is absolute.
+  CHECK(curve_error("l2", t, {0.2, 0.2, 0.2}, t, {0, 0, 0}) == doctest::Approx(0.2));
+  // A line is followed exactly from fewer points.
+  CHECK(curve_error("max", {0, 2}, {0, 2}, t, r) == doctest::Approx(0).epsilon(1e-15));
+  CHECK(std::isnan(curve_error("l2", {0, 1}, {0, 1}, t, r)));  // ends before the reference
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK(std::isnan(curve_error("max", t, {0, nan, 2}, t, r)));
+  CHECK(std::isnan(curve_error("l2", t, {0, nan, 2}, t, r)));
+}
+
+TEST_CASE("a ticker is due once for each multiple") {
+  Ticker tick(0.1);
+  CHECK(tick.due(0));
+  CHECK_FALSE(tick.due(0.0999));
+  CHECK(tick.due(0.1));
+  CHECK_FALSE(tick.due(0.15));
+  CHECK(tick.due(0.35));  // steps larger than the interval: once
+  CHECK_FALSE(tick.due(0.39));
+  CHECK(tick.due(0.1 * 3 + 0.1));  // 0.4 up to rounding
+  Ticker never(0);
+  CHECK_FALSE(never.due(1e9));
+}
