@@ -5,6 +5,7 @@
 
 #include "core/threads.hpp"
 #include "coupling/initial_state.hpp"
+#include "coupling/stopwatch.hpp"
 
 namespace polder::coupling {
 namespace {
@@ -71,6 +72,7 @@ void undrained_share(World<D>& world, double dt) {
 template <int D>
 void update_water_cells(World<D>& world, double end) {
   PoreWater<D>& w = *world.pore_water;
+  Stopwatch watch(w.wall_seconds);
   const Grid<D>& grid = world.skeleton.grid();
   world.skeleton.scatter_cells(w.cell_sums);
   const int slots = grid.slots();
@@ -128,6 +130,7 @@ mpm::MoveResult step_one_layer(World<D>& world, const StepInput& in, long step) 
     p.porosity = w.porosity;
     p.darcy_mobility = w.darcy_mobility;
     p.rhie_chow = world.scene.numerics.rhie_chow;
+    Stopwatch watch(w.wall_seconds);
     w.pressure.solve(p);
     w.pressure.node_gradient(w.pressure.increment(), fdm::BoundaryValues::homogeneous,
                              fdm::WallNormal::inward, w.node_gradient);

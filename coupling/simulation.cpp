@@ -8,6 +8,7 @@
 #include "coupling/initial_state.hpp"
 #include "coupling/one_layer.hpp"
 #include "coupling/simulation_run.hpp"
+#include "coupling/stopwatch.hpp"
 
 namespace polder::coupling {
 namespace {
@@ -15,16 +16,6 @@ namespace {
 constexpr int kRestInterval = 20;    // steps between two looks at the equilibrium ratios
 constexpr int kWaveInterval = 64;    // steps between two looks at the wave speed
 constexpr double kSpeedShare = 0.2;  // of a cell that a particle may cross in one step
-
-class Stopwatch {
- public:
-  explicit Stopwatch(double& sum) : sum_(sum), start_(std::chrono::steady_clock::now()) {}
-  ~Stopwatch() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  double& sum_;
-  std::chrono::steady_clock::time_point start_;
-};
 
 }  // namespace
 
@@ -96,6 +87,10 @@ void Simulation::Run<D>::step() {
     speed = moved.largest_speed;
   }
   {
+    if (world->pore_water) {
+      timing.mechanics += timing.water - world->pore_water->wall_seconds;  // of this step
+      timing.water = world->pore_water->wall_seconds;
+    }
     Stopwatch watch_audit(timing.audit);
     audit->add_step(*world, dt, in.damping, in.gravity);
   }

@@ -1,8 +1,6 @@
 // The simulation behind its interface, for one dimension. Private to coupling/.
 #pragma once
 
-#include <chrono>
-
 #include "coupling/audit.hpp"
 #include "coupling/simulation.hpp"
 #include "coupling/world.hpp"
