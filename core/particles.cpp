@@ -34,6 +34,7 @@ std::vector<ParticleField> ParticleSet<D>::fields() {
   if (!suction_stress.empty()) add("suction_stress", suction_stress);
   if (!conductivity.empty()) add("conductivity", conductivity);
   if (!wet.empty()) add("wet", wet);
+  if (group_by_cell) add("home_cell", home_cell);
   return all;
 }
 
@@ -113,6 +114,9 @@ void ParticleSet<D>::sort(const Grid<D>& grid) {
       if (source[i] >= 0) moved[i] = (*f.values)[source[i]];
     f.values->swap(moved);
   }
+  if (group_by_cell)
+    for (int i = 0; i < next; ++i)
+      if (source[i] >= 0) home_cell[i] = key[source[i]] % kCells;
   std::vector<int> moved_id(next, -1);
   for (int i = 0; i < next; ++i)
     if (source[i] >= 0) moved_id[i] = id[source[i]];

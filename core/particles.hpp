@@ -50,9 +50,11 @@ class ParticleSet {
   std::array<Reals, D * D> affine;         // C of the affine transfer [1/s]
   std::array<Reals, D> body_acceleration;  // besides gravity [m/s2]
   Reals pore_water;                        // degree of saturation times water density [kg per m3 of pores]
-  Reals suction_stress;  // degree of saturation times suction [Pa], isotropic part of the total stress
-  Reals conductivity;    // hydraulic conductivity [m/s]
-  Reals wet;             // 1 where the pores are full of water, 0 above the phreatic line
+  Reals suction_stress;        // degree of saturation times suction [Pa], isotropic part of the total stress
+  Reals conductivity;          // hydraulic conductivity [m/s]
+  bool group_by_cell = false;  // keep home_cell
+  Reals home_cell;             // cell inside its block where the last sort found the point
+  Reals wet;                   // 1 where the pores are full of water, 0 above the phreatic line
 
   std::vector<int> id;        // -1 = padding
   std::vector<Range> ranges;  // one for each occupied block of the grid

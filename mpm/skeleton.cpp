@@ -29,6 +29,7 @@ Skeleton<D>::Skeleton(Grid<D> grid, SkeletonOptions options, BoundarySet<D> boun
 template <int D>
 ParticleSet<D>& Skeleton<D>::add_body() {
   bodies_.push_back(std::make_unique<ParticleSet<D>>());
+  bodies_.back()->group_by_cell = options_.cell_average;
   return *bodies_.back();
 }
 
@@ -171,7 +172,7 @@ void Skeleton<D>::constrain(double time, double dt, const Reals* correction, Rea
 }
 
 template <int D>
-void Skeleton<D>::average_volumetric(const Reals& v) {
+void Skeleton<D>::project_volumetric() {
   const double h = grid_.spacing();
   constexpr int kCorners = ipow(2, D);
   // Mass of a corner node whose cells are about a quarter full; lighter corners say the cell is at the
@@ -185,7 +186,7 @@ void Skeleton<D>::average_volumetric(const Reals& v) {
       if (corner[0] < 0) continue;
       double left = 0, right = 0;  // radii of the cell's nodes
       if (hoop) left = grid_.origin()[0] + grid_.index(i)[0] * h, right = left + h;
-      const double share = projected_share_ != nullptr ? (*projected_share_)[i] : 0.0;
+      if (!((*projected_share_)[i] > 0)) continue;
       double rate = 0;
       bool full = true;
       for (int k = 0; k < kCorners; ++k) {
@@ -194,8 +195,8 @@ void Skeleton<D>::average_volumetric(const Reals& v) {
                 enough * (hoop ? std::max(radius, 0.25 * h) : 1.0);
         for (int d = 0; d < D; ++d) {
           const std::size_t j = static_cast<std::size_t>(corner[k]) * kVector + d;
-          const double u = share > 0 ? share * v_new_[j] + (1 - share) * v[j] : v[j];
-          rate += (k >> d & 1 ? u : -u) * (hoop && d == 0 ? radius / (0.5 * (left + right)) : 1.0);
+          rate += (k >> d & 1 ? v_new_[j] : -v_new_[j]) *
+                  (hoop && d == 0 ? radius / (0.5 * (left + right)) : 1.0);
         }
       }
       if (full) cell_rate_[i] = rate / (h * kCorners / 2);
@@ -210,11 +211,12 @@ MoveResult Skeleton<D>::gather(double time, double dt) {
   o.affine = options_.affine;
   o.flip = options_.flip;
   MoveResult r;
-  const auto rate = [&](const Reals& v) -> const Reals* {
-    if (!options_.cell_average) return nullptr;
-    average_volumetric(v);
-    return &cell_rate_;
-  };
+  o.cell_average = options_.cell_average;
+  if (options_.cell_average && projected_share_ != nullptr) {
+    project_volumetric();
+    o.projected_rate = &cell_rate_;
+    o.projected_share = projected_share_;
+  }
   if (options_.musl) {
     update_velocities(transfer_, options_.flip, v_old_, v_new_, &v_map_);
     parallel_for(grid_.blocks(), [&](int block) {
@@ -224,10 +226,10 @@ MoveResult Skeleton<D>::gather(double time, double dt) {
       }
     });
     boundaries_.apply(time + dt, dt, sums_, v_map_, false, false);
-    r = update_stress_and_move(transfer_, o, nullptr, v_new_, v_map_, rate(v_map_));
+    r = update_stress_and_move(transfer_, o, nullptr, v_new_, v_map_);
   } else {
     o.update_velocity = options_.affine == AffineKind::none;
-    r = update_stress_and_move(transfer_, o, &v_old_, v_new_, v_new_, rate(v_new_));
+    r = update_stress_and_move(transfer_, o, &v_old_, v_new_, v_new_);
   }
   if constexpr (D == 2)
     for (SurfaceLoad& load : loads_) load.move(grid_, options_.shape, dt, v_new_);

@@ -106,9 +106,9 @@ class Skeleton {
   double wave_speed(const std::vector<MaterialParameters>& materials) const;
 
  private:
-  // Volumetric strain rate (D v)_c / V_c of cells whose corners all carry material into cell_rate_, NaN
-  // elsewhere.
-  void average_volumetric(const Reals& v);
+  // Volumetric strain rate (D v_new)_c / V_c of cells with a projected share whose corners all carry material
+  // into cell_rate_, NaN elsewhere.
+  void project_volumetric();
   void allocate();
 
   Grid<D> grid_;

@@ -25,8 +25,8 @@ void update_velocities(Transfer<D>& transfer, double flip, const Reals& v_old, c
 
 template <int D>
 MoveResult update_stress_and_move(Transfer<D>& transfer, const MoveOptions& options, const Reals* v_old,
-                                  const Reals& v_move, const Reals& v_gradient, const Reals* cell_rate) {
-  return POLDER_SIMD_CALL(update_stress_and_move, transfer, options, v_old, v_move, v_gradient, cell_rate);
+                                  const Reals& v_move, const Reals& v_gradient) {
+  return POLDER_SIMD_CALL(update_stress_and_move, transfer, options, v_old, v_move, v_gradient);
 }
 
 template <int D>
@@ -44,7 +44,7 @@ std::shared_ptr<const void> make_law_handle(int dimension, const MaterialParamet
   template void scatter_cells<D>(Transfer<D>&, Reals&);                                         \
   template void update_velocities<D>(Transfer<D>&, double, const Reals&, const Reals&, Reals*); \
   template MoveResult update_stress_and_move<D>(Transfer<D>&, const MoveOptions&, const Reals*, \
-                                                const Reals&, const Reals&, const Reals*);      \
+                                                const Reals&, const Reals&);                    \
   template void sum_tiles<D>(Transfer<D>&, int, Reals&);
 POLDER_INSTANTIATE(2)
 POLDER_INSTANTIATE(3)

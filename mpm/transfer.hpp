@@ -73,6 +73,11 @@ struct MoveOptions {
   AffineKind affine = AffineKind::none;
   bool update_velocity = false;  // USL: blend velocities here too (v_old must be given)
   double flip = 0.99;
+  // Locking cure: points of a body that the last sort found in one cell share their mean volumetric strain.
+  bool cell_average = false;
+  // Of that, the share (or null) that is replaced by the rate of the cell a point is in [slots, NaN = none].
+  const Reals* projected_rate = nullptr;
+  const Reals* projected_share = nullptr;
 };
 
 struct MoveResult {
@@ -83,10 +88,9 @@ struct MoveResult {
 };
 
 // Velocity gradient from v_gradient, stress by the law, position by v_move, volume and domain by the strain.
-// cell_rate: volumetric strain rate to use in place of the particle's own [slots, NaN = keep], or null.
 template <int D>
 MoveResult update_stress_and_move(Transfer<D>& transfer, const MoveOptions& options, const Reals* v_old,
-                                  const Reals& v_move, const Reals& v_gradient, const Reals* cell_rate);
+                                  const Reals& v_move, const Reals& v_gradient);
 
 // Sum of the private tiles at every node. width = kSum, kVector or kCellSum.
 template <int D>

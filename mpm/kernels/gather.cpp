@@ -169,26 +169,6 @@ void update_velocities_of(mpm::Transfer<D>& t, double flip, const Reals& v_old, 
   });
 }
 
-// Replace the volumetric part of a pack's displacement gradient by that of its cell (NaN: keep), shared by
-// the directions that deform.
-template <int D>
-POLDER_INLINE void project_volumetric(const BlockFrame<D>& frame, const double* rate, const Pack* position,
-                                      Mask real, double dt, bool hoop, Pack* gradient, Pack& hoop_strain) {
-  constexpr int kTile = mpm::Transfer<D>::kTileSide;
-  Mask index = Mask{};
-  for (int d = D - 1; d >= 0; --d)
-    index = index * kTile +
-            (floor_to_int((position[d] - frame.origin[d]) * frame.inverse_h) - frame.first_node[d]);
-  Pack cell_rate;
-  for (int l = 0; l < kLanes; ++l) cell_rate[l] = rate[index[l]];
-  Pack own = hoop_strain;
-  for (int d = 0; d < D; ++d) own += gradient[d * D + d];
-  const double share = 1.0 / (D == 3 || hoop ? 3 : 2);
-  const Pack correction = select(real & (cell_rate == cell_rate), (cell_rate * dt - own) * share, Pack{});
-  for (int d = 0; d < D; ++d) gradient[d * D + d] += correction;
-  if (hoop) hoop_strain += correction;
-}
-
 struct BlockResult {
   double far = 0, fast = 0;  // largest displacement along an axis [cells], largest squared speed
   int body = -1, slot = -1;
@@ -253,9 +233,55 @@ struct MoveFrame {
   const MoveOptions& options;
   const BlockFrame<D>& block;
   const double* velocities;  // tile of pairs
-  const double* rate;        // tile of volumetric rates, or null
+  const double* rate;        // tiles of projected volumetric rates and of their shares, or null
+  const double* share;
   bool hoop, usl;
   double h;
+};
+
+// Motion of a pack between the gather from the nodes and the law.
+template <int D>
+struct Motion {
+  Pack gradient[D * D];        // dt dv_i/dx_j
+  Pack hoop;                   // hoop strain
+  Pack projected_rate, share;  // of the volumetric strain, by the point's cell
+
+  POLDER_INLINE Pack trace() const {
+    Pack sum = hoop;
+    for (int d = 0; d < D; ++d) sum += gradient[d * D + d];
+    return sum;
+  }
+  // Replace the volumetric strain, equally in all directions that deform.
+  POLDER_INLINE void set_trace(Pack wanted, bool axisymmetric) {
+    const Pack correction = (wanted - trace()) * (1.0 / (D == 3 || axisymmetric ? 3 : 2));
+    for (int d = 0; d < D; ++d) gradient[d * D + d] += correction;
+    if (axisymmetric) hoop += correction;
+  }
+};
+
+// Mean volumetric strain over the points of a body that the last sort found in one cell, weighted by volume.
+// The mean over the points that carry the stress is the adjoint of their internal force, wherever they have
+// moved: a rate taken from the cell's corners is not, and feeds energy into pressure waves once points are
+// off their first places.
+template <int D>
+struct CellMeans {
+  double volume[Grid<D>::kCells] = {};
+  double strain[Grid<D>::kCells] = {};
+
+  POLDER_INLINE void add(const double* home, const double* volumes, Pack trace) {
+    for (int l = 0; l < kLanes; ++l) {
+      const int cell = static_cast<int>(home[l]);
+      volume[cell] += volumes[l], strain[cell] += volumes[l] * trace[l];
+    }
+  }
+  void divide() {
+    for (int c = 0; c < Grid<D>::kCells; ++c) strain[c] = volume[c] > 0 ? strain[c] / volume[c] : 0;
+  }
+  POLDER_INLINE Pack of(const double* home) const {
+    Pack mean;
+    for (int l = 0; l < kLanes; ++l) mean[l] = strain[static_cast<int>(home[l])];
+    return mean;
+  }
 };
 
 template <class Stress>
@@ -284,9 +310,10 @@ POLDER_INLINE void update_volume(ParticleSet<D>& set, int p, double bulk_modulus
   store(&set.volume[p], load(&set.volume[p]) * (1.0 + change));
 }
 
+// First half of a pack's step: velocities, displacement gradient, motion.
 template <int D, Want kWant>
-POLDER_INLINE void gather_strain(const MoveFrame<D>& m, ParticleSet<D>& set, int p, int body, int u,
-                                 StressBatch<D>& batch, BeforeLaw& before, BlockResult& result) {
+POLDER_INLINE void gather_motion(const MoveFrame<D>& m, ParticleSet<D>& set, int p, int body,
+                                 Motion<D>& motion, BlockResult& result) {
   const MoveOptions& o = m.options;
   const double dt = o.dt;
   const Mask real = load(&set.mass[p]) > 0;
@@ -312,75 +339,129 @@ POLDER_INLINE void gather_strain(const MoveFrame<D>& m, ParticleSet<D>& set, int
       store(&set.affine[k][p], select(real, kWant == Want::moment ? q.moment[k] : q.gradient[k], Pack{}));
 
   // Padding points feel nothing, so that their state stays harmless.
-  for (int k = 0; k < D * D; ++k) batch.gradient[u][k] = select(real, dt * q.gradient[k], Pack{});
-  Pack hoop_strain = m.hoop ? select(real, dt * q.b[0] / x[0], Pack{}) : Pack{};
-  if (m.rate != nullptr)
-    project_volumetric<D>(m.block, m.rate, x, real, dt, m.hoop, batch.gradient[u], hoop_strain);
+  for (int k = 0; k < D * D; ++k) motion.gradient[k] = select(real, dt * q.gradient[k], Pack{});
+  motion.hoop = m.hoop ? select(real, dt * q.b[0] / x[0], Pack{}) : Pack{};
+  if (m.rate != nullptr) {
+    constexpr int kTile = mpm::Transfer<D>::kTileSide;
+    Mask index = Mask{};
+    for (int d = D - 1; d >= 0; --d)
+      index = index * kTile +
+              (floor_to_int((x[d] - m.block.origin[d]) * m.block.inverse_h) - m.block.first_node[d]);
+    for (int i = 0; i < kLanes; ++i)
+      motion.projected_rate[i] = m.rate[index[i]], motion.share[i] = m.share[index[i]];
+    const Mask projected = real & (motion.projected_rate == motion.projected_rate);
+    motion.share = select(projected, motion.share, Pack{});
+    motion.projected_rate = select(projected, motion.projected_rate, Pack{});
+  }
+  move_pack<D>(set, p, real, x, l, carried, motion.gradient, dt, m.h, body, result);
+}
 
-  // Strain and rotation refer to the midpoint of the step: a rigid rotation, and any path there and back,
-  // strains nothing.
+// Second half: strain and rotated stress for the law. They refer to the midpoint of the step: a rigid
+// rotation, and any path there and back, strains nothing.
+template <int D>
+POLDER_INLINE void prepare_law(ParticleSet<D>& set, int p, int u, const Motion<D>& motion,
+                               StressBatch<D>& batch, BeforeLaw& before) {
+  for (int k = 0; k < D * D; ++k) batch.gradient[u][k] = motion.gradient[k];
   Pack mid[D * D];
-  for (int k = 0; k < D * D; ++k) mid[k] = batch.gradient[u][k];
+  for (int k = 0; k < D * D; ++k) mid[k] = motion.gradient[k];
   midpoint_gradient(mid);
-  strain_of<D>(mid, hoop_strain, batch.strain[u]);
+  strain_of<D>(mid, motion.hoop, batch.strain[u]);
   for (int k = 0; k < StressBatch<D>::kStress; ++k) batch.stress[u][k] = load(&set.stress[k][p]);
   for (std::size_t k = 0; k < set.state.size(); ++k) batch.state[u][k] = load(&set.state[k][p]);
   rotate_stress(mid, batch.stress[u]);
-  move_pack<D>(set, p, real, x, l, carried, batch.gradient[u], dt, m.h, body, result);
-  before.dilatation = dilatation<D>(batch.gradient[u], hoop_strain);
+  before.dilatation = dilatation<D>(motion.gradient, motion.hoop);
   before.mean = mean_of(batch.stress[u]);
 }
 
-template <int D, Want kWant>
-void move_body(const MoveFrame<D>& m, int block, int body, BlockResult& result) {
-  ParticleSet<D>& set = *m.transfer.bodies[body].particles;
+// The law for the packs [first, first + packs), whose motions stand in `motion`.
+template <int D>
+POLDER_INLINE void apply_law(const MoveFrame<D>& m, ParticleSet<D>& set, int body, int first, int packs,
+                             const Motion<D>* motion) {
   const auto* law = static_cast<const Law<D>*>(m.transfer.bodies[body].law);
-  const auto range = set.ranges[block];
-  for (int first = range.first; first < range.first + range.count; first += kBatchPacks * kLanes) {
-    StressBatch<D> batch;
-    batch.packs = std::min(kBatchPacks, (range.first + range.count - first) / kLanes);
-    BeforeLaw before[kBatchPacks];
-    for (int u = 0; u < batch.packs; ++u)
-      gather_strain<D, kWant>(m, set, first + u * kLanes, body, u, batch, before[u], result);
-    law->update(batch);
-    for (int u = 0; u < batch.packs; ++u) {
-      const int p = first + u * kLanes;
-      update_volume<D>(set, p, m.transfer.bodies[body].bulk_modulus, before[u], mean_of(batch.stress[u]));
-      for (int k = 0; k < StressBatch<D>::kStress; ++k) store(&set.stress[k][p], batch.stress[u][k]);
-      for (std::size_t k = 0; k < set.state.size(); ++k) store(&set.state[k][p], batch.state[u][k]);
-    }
+  StressBatch<D> batch;
+  batch.packs = packs;
+  BeforeLaw before[kBatchPacks];
+  for (int u = 0; u < packs; ++u) prepare_law<D>(set, first + u * kLanes, u, motion[u], batch, before[u]);
+  law->update(batch);
+  for (int u = 0; u < packs; ++u) {
+    const int p = first + u * kLanes;
+    update_volume<D>(set, p, m.transfer.bodies[body].bulk_modulus, before[u], mean_of(batch.stress[u]));
+    for (int k = 0; k < StressBatch<D>::kStress; ++k) store(&set.stress[k][p], batch.stress[u][k]);
+    for (std::size_t k = 0; k < set.state.size(); ++k) store(&set.state[k][p], batch.state[u][k]);
   }
+}
+
+// Without the locking cure, batch after batch; with it, all motions of the block first, then their cells'
+// means.
+template <int D, Want kWant>
+void move_body(const MoveFrame<D>& m, int block, int body, std::vector<Motion<D>>& motions,
+               BlockResult& result) {
+  ParticleSet<D>& set = *m.transfer.bodies[body].particles;
+  const auto range = set.ranges[block];
+  const int packs = range.count / kLanes;
+  if (!m.options.cell_average) {
+    Motion<D> motion[kBatchPacks];
+    for (int u = 0; u < packs; u += kBatchPacks) {
+      const int n = std::min(kBatchPacks, packs - u), first = range.first + u * kLanes;
+      for (int i = 0; i < n; ++i)
+        gather_motion<D, kWant>(m, set, first + i * kLanes, body, motion[i], result);
+      apply_law<D>(m, set, body, first, n, motion);
+    }
+    return;
+  }
+  if (static_cast<int>(motions.size()) < packs) motions.resize(packs);
+  CellMeans<D> means;
+  for (int u = 0; u < packs; ++u) {
+    const int p = range.first + u * kLanes;
+    gather_motion<D, kWant>(m, set, p, body, motions[u], result);
+    means.add(&set.home_cell[p], &set.volume[p], motions[u].trace());
+  }
+  means.divide();
+  for (int u = 0; u < packs; ++u) {
+    const int p = range.first + u * kLanes;
+    const Pack mean = select(load(&set.mass[p]) > 0, means.of(&set.home_cell[p]), Pack{});
+    Motion<D>& q = motions[u];
+    q.set_trace(m.rate != nullptr ? mean + q.share * (q.projected_rate * m.options.dt - mean) : mean, m.hoop);
+  }
+  for (int u = 0; u < packs; u += kBatchPacks)
+    apply_law<D>(m, set, body, range.first + u * kLanes, std::min(kBatchPacks, packs - u), &motions[u]);
 }
 
 template <int D, Want kWant>
 BlockResult move_block(mpm::Transfer<D>& t, const MoveOptions& o, const Reals* v_old, const Reals& v_move,
-                       const Reals& v_gradient, const Reals* cell_rate, int block) {
+                       const Reals& v_gradient, int block) {
   constexpr int kTileNodes = mpm::Transfer<D>::kTileNodes;
-  alignas(64) double velocities[kTileNodes * kPair<D>], rate[kTileNodes];
+  alignas(64) double velocities[kTileNodes * kPair<D>], rate[kTileNodes], share[kTileNodes];
   const bool usl = o.update_velocity && kWant == Want::gradient;
   load_pair<D>(*t.grid, block, usl ? *v_old : v_move, v_gradient, velocities);
-  if (cell_rate != nullptr) load_tile<D, 1, 1>(*t.grid, block, cell_rate->data(), rate);
+  const bool projected = o.projected_rate != nullptr;
+  if (projected) {
+    load_tile<D, 1, 1>(*t.grid, block, o.projected_rate->data(), rate);
+    load_tile<D, 1, 1>(*t.grid, block, o.projected_share->data(), share);
+  }
   const BlockFrame<D> frame(*t.grid, block);
   const MoveFrame<D> m{t,
                        o,
                        frame,
                        velocities,
-                       cell_rate != nullptr ? rate : nullptr,
+                       projected ? rate : nullptr,
+                       projected ? share : nullptr,
                        t.space == Space::axisymmetric,
                        usl,
                        t.grid->spacing()};
   BlockResult result;
+  thread_local std::vector<Motion<D>> motions;
   for (std::size_t body = 0; body < t.bodies.size(); ++body)
-    move_body<D, kWant>(m, block, static_cast<int>(body), result);
+    move_body<D, kWant>(m, block, static_cast<int>(body), motions, result);
   return result;
 }
 
 template <int D, Want kWant>
 MoveResult move_of(mpm::Transfer<D>& t, const MoveOptions& o, const Reals* v_old, const Reals& v_move,
-                   const Reals& v_gradient, const Reals* cell_rate) {
+                   const Reals& v_gradient) {
   std::vector<BlockResult> results(t.grid->occupied_blocks());
   parallel_for(t.grid->occupied_blocks(), [&](int block) {
-    results[block] = move_block<D, kWant>(t, o, v_old, v_move, v_gradient, cell_rate, block);
+    results[block] = move_block<D, kWant>(t, o, v_old, v_move, v_gradient, block);
   });
   MoveResult total;
   for (const BlockResult& r : results) {
@@ -395,10 +476,9 @@ MoveResult move_of(mpm::Transfer<D>& t, const MoveOptions& o, const Reals* v_old
 
 template <int D>
 MoveResult move_any(mpm::Transfer<D>& t, const MoveOptions& o, const Reals* v_old, const Reals& v_move,
-                    const Reals& v_gradient, const Reals* cell_rate) {
-  if (o.affine == AffineKind::apic)
-    return move_of<D, Want::moment>(t, o, v_old, v_move, v_gradient, cell_rate);
-  return move_of<D, Want::gradient>(t, o, v_old, v_move, v_gradient, cell_rate);
+                    const Reals& v_gradient) {
+  if (o.affine == AffineKind::apic) return move_of<D, Want::moment>(t, o, v_old, v_move, v_gradient);
+  return move_of<D, Want::gradient>(t, o, v_old, v_move, v_gradient);
 }
 
 }  // namespace
@@ -410,12 +490,12 @@ void update_velocities(mpm::Transfer<3>& t, double f, const Reals& a, const Real
   update_velocities_of(t, f, a, b, m);
 }
 MoveResult update_stress_and_move(mpm::Transfer<2>& t, const MoveOptions& o, const Reals* a, const Reals& b,
-                                  const Reals& c, const Reals* r) {
-  return move_any(t, o, a, b, c, r);
+                                  const Reals& c) {
+  return move_any(t, o, a, b, c);
 }
 MoveResult update_stress_and_move(mpm::Transfer<3>& t, const MoveOptions& o, const Reals* a, const Reals& b,
-                                  const Reals& c, const Reals* r) {
-  return move_any(t, o, a, b, c, r);
+                                  const Reals& c) {
+  return move_any(t, o, a, b, c);
 }
 
 }  // namespace polder::POLDER_SIMD_NAMESPACE

@@ -11,7 +11,7 @@
   POLDER_SIMD_DECLARE(void, sum_tiles, mpm::Transfer<D>&, int, Reals&)                                      \
   POLDER_SIMD_DECLARE(void, update_velocities, mpm::Transfer<D>&, double, const Reals&, const Reals&, bool) \
   POLDER_SIMD_DECLARE(mpm::MoveResult, update_stress_and_move, mpm::Transfer<D>&, const mpm::MoveOptions&,  \
-                      const Reals*, const Reals&, const Reals&, const Reals*)
+                      const Reals*, const Reals&, const Reals&)
 
 namespace polder {
 POLDER_DECLARE_KERNELS(2)

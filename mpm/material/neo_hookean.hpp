@@ -2,8 +2,9 @@
 // Cauchy stress
 //   sigma = P F^T / J = (lambda ln J I + mu (F F^T - I)) / J.
 // The deformation gradient is a state variable and follows the step, F <- (I + dt L) F; out of the plane
-// (plane strain: none; axisymmetry: hoop) F_zz <- (1 + strain_zz) F_zz. The stress follows from F alone: what
-// the kernel carried or rotated before does not matter. A particle turned inside out (J <= 0) gets NaN.
+// (plane strain: none; axisymmetry: hoop) F_zz <- (1 + strain_zz / 2) / (1 - strain_zz / 2) F_zz. The stress
+// follows from F alone: what the kernel carried or rotated before does not matter. A particle turned inside
+// out (J <= 0) gets NaN.
 #pragma once
 
 #include "mpm/material/law.hpp"
@@ -23,7 +24,8 @@ class NeoHookean final : public Law<D> {
       advance(batch.gradient[p], f);
       Pack(&s)[StressBatch<D>::kStress] = batch.stress[p];
       if constexpr (D == 2) {
-        f[4] *= 1 + batch.strain[p][2];
+        // strain refers to the midpoint of the step
+        f[4] *= (1 + 0.5 * batch.strain[p][2]) / (1 - 0.5 * batch.strain[p][2]);
         const Pack j = (f[0] * f[3] - f[1] * f[2]) * f[4], volumetric = lame_ * log(j) - shear_, inv = 1 / j;
         s[0] = (volumetric + shear_ * (f[0] * f[0] + f[1] * f[1])) * inv;
         s[1] = (volumetric + shear_ * (f[2] * f[2] + f[3] * f[3])) * inv;
