@@ -69,7 +69,8 @@ TEST_CASE(
       for (int a = 0; a < dimension; ++a)
         for (int b = 0; b < dimension; ++b)
           gradient[a * dimension + b] = g[a][b] = 0.2 * std::sin(3.0 * a + 7.0 * b + step);
-      if (dimension == 2) strain[2] = g[2][2] = 0.05 * step;
+      // strain refers to the midpoint of the step
+      if (dimension == 2) g[2][2] = 0.05 * step, strain[2] = g[2][2] / (1 + 0.5 * g[2][2]);
       for (int a = 0; a < 3; ++a)
         for (int b = 0; b < 3; ++b) {
           next[a][b] = f[a][b];
