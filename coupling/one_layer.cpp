@@ -63,7 +63,7 @@ void undrained_share(World<D>& world, double dt) {
   for (const mpm::MaterialParameters& m : world.scene.materials) grains = std::max(grains, m.density_solid);
   for (const fdm::ActiveCell<D>& cell : w.cells.cells()) {
     const double n = w.porosity[cell.slot], density = (1 - n) * grains + n * world.scene.water.density;
-    w.undrained[cell.slot] = dt / (dt + density * w.darcy_mobility[cell.slot]);
+    w.undrained[cell.slot] = std::min(1.0, 0.5 * dt / (density * w.darcy_mobility[cell.slot]));
   }
 }
 
