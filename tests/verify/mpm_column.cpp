@@ -66,7 +66,7 @@ ColumnResult settle(const ColumnOptions& o) {
   int n = 0;
   for (int p = 0; p < set.slots(); ++p)
     if (set.id[p] >= 0 && set.initial_position[up][p] > top - 1e-9) lowest += set.position[up][p], ++n;
-  r.settlement_error = (lowest / n - exact) / (top - exact);
+  r.settlement_error = (lowest / n - exact) / (o.from_exact_stress ? o.height : top - exact);
   return r;
 }
 
