@@ -14,9 +14,10 @@ struct ColumnResult {
   double cell_rms = 0;          // the same of the means over the points that started in one cell
   double worst = 0, where = 0;  // largest error of a point and its reference height [m]
   double bottom = 0;            // largest error of the points in the lowest cell
-  double settlement_error = 0;  // of the highest points, as a share of the exact value (of the height if that is 0)
-  double reaction_error = 0;    // of the base, as a share of the weight
-  double unbalanced = 0;        // out-of-balance force at the end, as a share of the load
+  double settlement_error =
+      0;  // of the highest points, as a share of the exact value (of the height if that is 0)
+  double reaction_error = 0;  // of the base, as a share of the weight
+  double unbalanced = 0;      // out-of-balance force at the end, as a share of the load
   long steps = 0;
 };
 
