@@ -52,21 +52,6 @@ void pressure_push(const mpm::Skeleton<D>& skeleton, const Reals& gradient, doub
   });
 }
 
-// How undrained a step of dt is in each active cell: the inertial part of the pressure equation's
-// coefficient, (dt / rho) / (dt / rho + k / gamma_w). 1: volume changes only as the projected velocity says;
-// 0: water drains freely and the skeleton is on its own.
-template <int D>
-void undrained_share(World<D>& world, double dt) {
-  PoreWater<D>& w = *world.pore_water;
-  w.undrained.assign(world.skeleton.grid().slots(), 0.0);
-  double grains = 0;
-  for (const mpm::MaterialParameters& m : world.scene.materials) grains = std::max(grains, m.density_solid);
-  for (const fdm::ActiveCell<D>& cell : w.cells.cells()) {
-    const double n = w.porosity[cell.slot], density = (1 - n) * grains + n * world.scene.water.density;
-    w.undrained[cell.slot] = std::min(1.0, 0.5 * dt / (density * w.darcy_mobility[cell.slot]));
-  }
-}
-
 }  // namespace
 
 template <int D>
@@ -113,10 +98,10 @@ mpm::MoveResult step_one_layer(World<D>& world, const StepInput& in, long step) 
   pressure_push(skeleton, w.node_gradient, 1.0, w.acceleration);
   skeleton.predict(in.dt, gravity, in.damping, &w.acceleration);
 
-  const Reals* correction = nullptr;
+  skeleton.constrain(end, in.dt);
   w.correction.clear();
   if (in.water_flows) {
-    skeleton.constrain(end, in.dt, nullptr, w.v_predicted, false);
+    const Reals& strain_velocity = skeleton.strain_velocity(end, in.dt);
     const Reals& sums = skeleton.sums();
     w.mobility.resize(skeleton.grid().slots());
     parallel_for(skeleton.grid().slots(), [&](int i) {
@@ -125,24 +110,21 @@ mpm::MoveResult step_one_layer(World<D>& world, const StepInput& in, long step) 
     });
     fdm::PressureStep p;
     p.dt = in.dt;
-    p.velocity = w.v_predicted;
+    p.velocity = strain_velocity;
     p.mobility = w.mobility;
     p.porosity = w.porosity;
     p.darcy_mobility = w.darcy_mobility;
     p.rhie_chow = world.scene.numerics.rhie_chow;
-    Stopwatch watch(w.wall_seconds);
-    w.pressure.solve(p);
-    w.pressure.node_gradient(w.pressure.increment(), fdm::BoundaryValues::homogeneous,
-                             fdm::WallNormal::inward, w.node_gradient);
-    pressure_push(skeleton, w.node_gradient, in.dt, w.correction);
-    correction = &w.correction;
+    {
+      Stopwatch watch(w.wall_seconds);
+      w.pressure.solve(p);
+      w.pressure.node_gradient(w.pressure.increment(), fdm::BoundaryValues::homogeneous,
+                               fdm::WallNormal::inward, w.node_gradient);
+      pressure_push(skeleton, w.node_gradient, in.dt, w.correction);
+    }
+    skeleton.correct(end, in.dt, w.correction);
     w.outflow += in.dt * w.pressure.discharge().total();
     w.storage += in.dt * w.pressure.balance().storage;
-  }
-  skeleton.constrain(end, in.dt, correction, skeleton.v_new(), true);
-  if (in.water_flows && skeleton.options().cell_average) {
-    undrained_share(world, in.dt);
-    skeleton.set_projected_share(w.undrained);
   }
   const mpm::MoveResult moved = skeleton.gather(in.time, in.dt);
   if (step % kWettingInterval == 0) wet_points(world);
@@ -158,7 +140,7 @@ mpm::MoveResult step_dry(World<D>& world, const StepInput& in) {
   skeleton.sort();
   skeleton.scatter(end);
   skeleton.predict(in.dt, gravity, in.damping, nullptr);
-  skeleton.constrain(end, in.dt, nullptr, skeleton.v_new(), true);
+  skeleton.constrain(end, in.dt);
   return skeleton.gather(in.time, in.dt);
 }
 

@@ -2,8 +2,8 @@
 //
 // Order of a step (after Higo et al. 2010 with a projected pressure; equations in docs/theory):
 //   sort, cells (fill, porosity, surface), scatter,
-//   predict with grad p^n, constrain, solve for dp, correct with grad dp, constrain,
-//   volumetric strain of full cells from the projected velocity, gather, wet.
+//   predict with grad p^n, constrain, map to the velocities that strain the soil, solve for dp, correct with
+//   grad dp, gather, wet.
 #pragma once
 
 #include "coupling/world.hpp"

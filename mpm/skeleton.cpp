@@ -50,22 +50,7 @@ void Skeleton<D>::allocate() {
   transfer_.resize();
   const std::size_t n = grid_.slots();
   for (Reals* r : {&v_old_, &v_trial_, &v_new_, &v_map_}) r->assign(n * kVector, 0.0);
-  cell_rate_.assign(n, std::numeric_limits<double>::quiet_NaN());
   boundaries_.update(grid_);
-  constexpr int kCorners = ipow(2, D);
-  corners_.assign(n * kCorners, -1);
-  for (int i = 0; i < grid_.slots(); ++i) {
-    const Index<D> cell = grid_.index(i);
-    int slots[kCorners];
-    bool stored = grid_.is_cell(cell);
-    for (int k = 0; k < kCorners && stored; ++k) {
-      Index<D> node = cell;
-      for (int d = 0; d < D; ++d) node[d] += k >> d & 1;
-      slots[k] = grid_.slot(node);
-      stored = slots[k] >= 0;
-    }
-    if (stored) std::copy_n(slots, kCorners, &corners_[static_cast<std::size_t>(i) * kCorners]);
-  }
 }
 
 template <int D>
@@ -148,21 +133,15 @@ void Skeleton<D>::predict(double dt, const Point<D>& gravity, double damping, co
 }
 
 template <int D>
-void Skeleton<D>::constrain(double time, double dt, const Reals* correction, Reals& v, bool record) {
-  v.resize(v_trial_.size());
-  parallel_for(grid_.blocks(), [&](int block) {
-    const std::size_t first = static_cast<std::size_t>(block) * Grid<D>::kCells * kVector;
-    for (std::size_t i = first; i < first + Grid<D>::kCells * kVector; ++i)
-      v[i] = v_trial_[i] + (correction != nullptr ? (*correction)[i] : 0.0);
-  });
-  boundaries_.apply(time, dt, sums_, v, true, record);
-  if (!record) return;
+void Skeleton<D>::constrain(double time, double dt) {
+  v_new_ = v_trial_;
+  boundaries_.apply(time, dt, sums_, v_new_, true, true);
   std::vector<double> squares(grid_.blocks(), 0.0);
   parallel_for(grid_.blocks(), [&](int block) {
     for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i)
       for (int d = 0; d < D; ++d) {
         const std::size_t j = static_cast<std::size_t>(i) * kVector + d;
-        const double impulse = sums_[static_cast<std::size_t>(i) * kSum] * (v[j] - v_old_[j]);
+        const double impulse = sums_[static_cast<std::size_t>(i) * kSum] * (v_new_[j] - v_old_[j]);
         squares[block] += impulse * impulse;
       }
   });
@@ -172,36 +151,34 @@ void Skeleton<D>::constrain(double time, double dt, const Reals* correction, Rea
 }
 
 template <int D>
-void Skeleton<D>::project_volumetric() {
-  const double h = grid_.spacing();
-  constexpr int kCorners = ipow(2, D);
-  // Mass of a corner node whose cells are about a quarter full; lighter corners say the cell is at the
-  // surface.
-  const double enough = 0.1 * (mass_floor_ / kMassFloor) / kCorners;
-  const bool hoop = options_.space == Space::axisymmetric;
+void Skeleton<D>::remap(double flip, const Reals& from, const Reals& to, double time, double dt) {
+  update_velocities(transfer_, flip, from, to, &v_map_);
   parallel_for(grid_.blocks(), [&](int block) {
     for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
-      cell_rate_[i] = std::numeric_limits<double>::quiet_NaN();
-      const int* corner = &corners_[static_cast<std::size_t>(i) * kCorners];
-      if (corner[0] < 0) continue;
-      double left = 0, right = 0;  // radii of the cell's nodes
-      if (hoop) left = grid_.origin()[0] + grid_.index(i)[0] * h, right = left + h;
-      if (!((*projected_share_)[i] > 0)) continue;
-      double rate = 0;
-      bool full = true;
-      for (int k = 0; k < kCorners; ++k) {
-        const double radius = k & 1 ? right : left;
-        full &= sums_[static_cast<std::size_t>(corner[k]) * kSum] >
-                enough * (hoop ? std::max(radius, 0.25 * h) : 1.0);
-        for (int d = 0; d < D; ++d) {
-          const std::size_t j = static_cast<std::size_t>(corner[k]) * kVector + d;
-          rate += (k >> d & 1 ? v_new_[j] : -v_new_[j]) *
-                  (hoop && d == 0 ? radius / (0.5 * (left + right)) : 1.0);
-        }
-      }
-      if (full) cell_rate_[i] = rate / (h * kCorners / 2);
+      const double mass = sums_[static_cast<std::size_t>(i) * kSum], inverse = mass > 0 ? 1 / mass : 0;
+      for (int d = 0; d < D; ++d) v_map_[static_cast<std::size_t>(i) * kVector + d] *= inverse;
     }
   });
+  boundaries_.apply(time, dt, sums_, v_map_, false, false);
+  mapped_ = true;
+}
+
+template <int D>
+const Reals& Skeleton<D>::strain_velocity(double time, double dt) {
+  if (!options_.musl) return v_new_;
+  if (!mapped_) remap(options_.flip, v_old_, v_new_, time, dt);
+  return v_map_;
+}
+
+template <int D>
+void Skeleton<D>::correct(double time, double dt, const Reals& correction) {
+  const std::size_t stride = static_cast<std::size_t>(Grid<D>::kCells) * kVector;
+  if (options_.musl) v_before_ = v_new_;
+  parallel_for(grid_.blocks(), [&](int block) {
+    for (std::size_t i = block * stride; i < (block + 1) * stride; ++i) v_new_[i] += correction[i];
+  });
+  boundaries_.apply(time, dt, sums_, v_new_, false, false);
+  if (options_.musl) remap(1.0, v_before_, v_new_, time, dt);
 }
 
 template <int D>
@@ -210,30 +187,16 @@ MoveResult Skeleton<D>::gather(double time, double dt) {
   o.dt = dt;
   o.affine = options_.affine;
   o.flip = options_.flip;
-  MoveResult r;
   o.cell_average = options_.cell_average;
-  if (options_.cell_average && projected_share_ != nullptr) {
-    project_volumetric();
-    o.projected_rate = &cell_rate_;
-    o.projected_share = projected_share_;
-  }
-  if (options_.musl) {
-    update_velocities(transfer_, options_.flip, v_old_, v_new_, &v_map_);
-    parallel_for(grid_.blocks(), [&](int block) {
-      for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
-        const double mass = sums_[static_cast<std::size_t>(i) * kSum], inverse = mass > 0 ? 1 / mass : 0;
-        for (int d = 0; d < D; ++d) v_map_[static_cast<std::size_t>(i) * kVector + d] *= inverse;
-      }
-    });
-    boundaries_.apply(time + dt, dt, sums_, v_map_, false, false);
-    r = update_stress_and_move(transfer_, o, nullptr, v_new_, v_map_);
-  } else {
-    o.update_velocity = options_.affine == AffineKind::none;
-    r = update_stress_and_move(transfer_, o, &v_old_, v_new_, v_new_);
-  }
+  // Points, and the surfaces that carry loads, move with the velocity that strains the soil. Under MUSL v_new
+  // differs from it where a node carries little mass; positions and strains would part company there, and
+  // stressed soil at a surface start to oscillate.
+  const Reals& v = strain_velocity(time + dt, dt);
+  o.update_velocity = !options_.musl && options_.affine == AffineKind::none;
+  MoveResult r = update_stress_and_move(transfer_, o, options_.musl ? nullptr : &v_old_, v, v);
   if constexpr (D == 2)
-    for (SurfaceLoad& load : loads_) load.move(grid_, options_.shape, dt, v_new_);
-  projected_share_ = nullptr;
+    for (SurfaceLoad& load : loads_) load.move(grid_, options_.shape, dt, v);
+  mapped_ = false;
   travelled_ += r.largest_displacement;
   if (!r.finite || r.largest_displacement > kSkin) {
     const ParticleSet<D>& set = *bodies_[r.fastest_body];

@@ -70,14 +70,20 @@ class Skeleton {
   // componentwise.
   void predict(double dt, const Point<D>& gravity, double damping, const Reals* acceleration);
 
-  // v = v_trial + correction [slots * 4] (or null) under the boundaries at `time`.
-  void constrain(double time, double dt, const Reals* correction, Reals& v, bool record);
+  // v_new = v_trial under the boundaries at `time`; keeps their reactions and the out-of-balance force.
+  void constrain(double time, double dt);
 
-  // For the next gather(), where the locking cure is on: the share of each cell's volumetric strain [slots]
-  // that comes from v_new itself, the rest coming from the velocities of all strains (re-mapped momenta under
-  // MUSL). A pressure that has just been projected out of v_new must find its own volume change in the
-  // strains; everything else is more stable with the re-mapped one. `share` must live until then.
-  void set_projected_share(const Reals& share) { projected_share_ = &share; }
+  // The velocities that the strains of this step come from: under MUSL the nodal velocities of the particles'
+  // momenta updated with v_new (this updates the particles), else v_new. gather() does this itself where it
+  // was not called. time: end of the step.
+  const Reals& strain_velocity(double time, double dt);
+  // Adds `correction` [slots * 4] to v_new under the boundaries (without friction, which has acted), and
+  // under MUSL to the particles and their momenta. Pressure must be projected out of the velocities that
+  // strain the soil: under MUSL a pressure that makes v_new free of divergence acts ahead of its strains by a
+  // part of the step, and feeds energy to undrained motion. And it must reach the strains the way all
+  // momentum does, through the particles: added to the strain velocity as it stands it shortens the stable
+  // step.
+  void correct(double time, double dt, const Reals& correction);
 
   // Particles from v_new. Returns what the step moved; throws NumericalError naming the point when a value is
   // not finite.
@@ -106,9 +112,9 @@ class Skeleton {
   double wave_speed(const std::vector<MaterialParameters>& materials) const;
 
  private:
-  // Volumetric strain rate (D v_new)_c / V_c of cells with a projected share whose corners all carry material
-  // into cell_rate_, NaN elsewhere.
-  void project_volumetric();
+  // Particle velocities changed by the step from one nodal velocity to another, and v_map_ from their
+  // momenta.
+  void remap(double flip, const Reals& from, const Reals& to, double time, double dt);
   void allocate();
 
   Grid<D> grid_;
@@ -118,10 +124,8 @@ class Skeleton {
   std::vector<std::unique_ptr<ParticleSet<D>>> bodies_;
   std::vector<std::shared_ptr<const void>> laws_;  // one for each body
   Transfer<D> transfer_;
-  Reals sums_, v_old_, v_trial_, v_new_, v_map_, cell_rate_;
-  const Reals* projected_share_ = nullptr;
-  std::vector<int>
-      corners_;  // slots of each cell's corner nodes, x fastest; -1 where the cell is none or not stored
+  Reals sums_, v_old_, v_trial_, v_new_, v_map_, v_before_;
+  bool mapped_ = false;  // v_map_ and the particles' velocities belong to v_new_
   double travelled_ = 1e9;
   double mass_floor_ = 0;
   double unbalanced_ = 0, load_norm_ = 0;

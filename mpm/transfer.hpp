@@ -75,9 +75,6 @@ struct MoveOptions {
   double flip = 0.99;
   // Locking cure: points of a body that the last sort found in one cell share their mean volumetric strain.
   bool cell_average = false;
-  // Of that, the share (or null) that is replaced by the rate of the cell a point is in [slots, NaN = none].
-  const Reals* projected_rate = nullptr;
-  const Reals* projected_share = nullptr;
 };
 
 struct MoveResult {

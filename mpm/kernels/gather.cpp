@@ -233,8 +233,6 @@ struct MoveFrame {
   const MoveOptions& options;
   const BlockFrame<D>& block;
   const double* velocities;  // tile of pairs
-  const double* rate;        // tiles of projected volumetric rates and of their shares, or null
-  const double* share;
   bool hoop, usl;
   double h;
 };
@@ -242,9 +240,8 @@ struct MoveFrame {
 // Motion of a pack between the gather from the nodes and the law.
 template <int D>
 struct Motion {
-  Pack gradient[D * D];        // dt dv_i/dx_j
-  Pack hoop;                   // hoop strain
-  Pack projected_rate, share;  // of the volumetric strain, by the point's cell
+  Pack gradient[D * D];  // dt dv_i/dx_j
+  Pack hoop;             // hoop strain
 
   POLDER_INLINE Pack trace() const {
     Pack sum = hoop;
@@ -341,18 +338,6 @@ POLDER_INLINE void gather_motion(const MoveFrame<D>& m, ParticleSet<D>& set, int
   // Padding points feel nothing, so that their state stays harmless.
   for (int k = 0; k < D * D; ++k) motion.gradient[k] = select(real, dt * q.gradient[k], Pack{});
   motion.hoop = m.hoop ? select(real, dt * q.b[0] / x[0], Pack{}) : Pack{};
-  if (m.rate != nullptr) {
-    constexpr int kTile = mpm::Transfer<D>::kTileSide;
-    Mask index = Mask{};
-    for (int d = D - 1; d >= 0; --d)
-      index = index * kTile +
-              (floor_to_int((x[d] - m.block.origin[d]) * m.block.inverse_h) - m.block.first_node[d]);
-    for (int i = 0; i < kLanes; ++i)
-      motion.projected_rate[i] = m.rate[index[i]], motion.share[i] = m.share[index[i]];
-    const Mask projected = real & (motion.projected_rate == motion.projected_rate);
-    motion.share = select(projected, motion.share, Pack{});
-    motion.projected_rate = select(projected, motion.projected_rate, Pack{});
-  }
   move_pack<D>(set, p, real, x, l, carried, motion.gradient, dt, m.h, body, result);
 }
 
@@ -420,8 +405,7 @@ void move_body(const MoveFrame<D>& m, int block, int body, std::vector<Motion<D>
   for (int u = 0; u < packs; ++u) {
     const int p = range.first + u * kLanes;
     const Pack mean = select(load(&set.mass[p]) > 0, means.of(&set.home_cell[p]), Pack{});
-    Motion<D>& q = motions[u];
-    q.set_trace(m.rate != nullptr ? mean + q.share * (q.projected_rate * m.options.dt - mean) : mean, m.hoop);
+    motions[u].set_trace(mean, m.hoop);
   }
   for (int u = 0; u < packs; u += kBatchPacks)
     apply_law<D>(m, set, body, range.first + u * kLanes, std::min(kBatchPacks, packs - u), &motions[u]);
@@ -431,24 +415,11 @@ template <int D, Want kWant>
 BlockResult move_block(mpm::Transfer<D>& t, const MoveOptions& o, const Reals* v_old, const Reals& v_move,
                        const Reals& v_gradient, int block) {
   constexpr int kTileNodes = mpm::Transfer<D>::kTileNodes;
-  alignas(64) double velocities[kTileNodes * kPair<D>], rate[kTileNodes], share[kTileNodes];
+  alignas(64) double velocities[kTileNodes * kPair<D>];
   const bool usl = o.update_velocity && kWant == Want::gradient;
   load_pair<D>(*t.grid, block, usl ? *v_old : v_move, v_gradient, velocities);
-  const bool projected = o.projected_rate != nullptr;
-  if (projected) {
-    load_tile<D, 1, 1>(*t.grid, block, o.projected_rate->data(), rate);
-    load_tile<D, 1, 1>(*t.grid, block, o.projected_share->data(), share);
-  }
   const BlockFrame<D> frame(*t.grid, block);
-  const MoveFrame<D> m{t,
-                       o,
-                       frame,
-                       velocities,
-                       projected ? rate : nullptr,
-                       projected ? share : nullptr,
-                       t.space == Space::axisymmetric,
-                       usl,
-                       t.grid->spacing()};
+  const MoveFrame<D> m{t, o, frame, velocities, t.space == Space::axisymmetric, usl, t.grid->spacing()};
   BlockResult result;
   thread_local std::vector<Motion<D>> motions;
   for (std::size_t body = 0; body < t.bodies.size(); ++body)

@@ -101,7 +101,8 @@ class Model {
           for (int d = 0; d < D; ++d) v_gradient[k.index][d] += k.weight * p.mass * p.v[d] / m[k.index];
       hold_sides(v_gradient);
     }
-    for (Particle<D>& p : particles) move(p, v_new, v_gradient, dt);
+    for (Particle<D>& p : particles)
+      move(p, musl ? v_gradient : v_new, v_gradient, dt);  // v_gradient under MUSL
   }
 
  private:

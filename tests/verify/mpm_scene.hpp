@@ -86,7 +86,7 @@ class Scene {
     skeleton.sort();
     skeleton.scatter(time);
     skeleton.predict(dt, gravity, damping, nullptr);
-    skeleton.constrain(time, dt, nullptr, skeleton.v_new(), true);
+    skeleton.constrain(time, dt);
     last = skeleton.gather(time, dt);
     time += dt;
     ++steps;
