@@ -72,7 +72,7 @@ int explain_command(const Arguments& a, std::ostream& out, std::ostream&) {
   set_threads(choose_threads(a.integer("--threads", 1, kMostThreads).value_or(0), scene));
   Simulation simulation(scene);
   const coupling::StepLimit limit = simulation.step_limit();
-  const double step = scene.numerics.time_step.value_or(scene.numerics.courant * limit.dt);
+  const double step = scene.numerics.time_step.value_or(simulation.automatic_step());
 
   out << "case          " << a.words.front() << (scene.title.empty() ? "" : ": " + scene.title) << '\n';
   explain_formulation(scene, out);

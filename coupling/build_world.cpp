@@ -160,8 +160,7 @@ template <int D>
 double World<D>::unit_weight() const {
   double g = 0;
   for (double x : gravity) g += x * x;
-  // Hydraulic conductivities are defined with the earth's gravity where the scene has none.
-  return scene.water.density * (g > 0 ? std::sqrt(g) : 9.81);
+  return scene.water.density * (g > 0 ? std::sqrt(g) : kStandardGravity);
 }
 
 template <int D>

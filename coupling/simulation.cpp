@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "core/error.hpp"
 #include "coupling/initial_state.hpp"
 #include "coupling/one_layer.hpp"
 #include "coupling/simulation_run.hpp"
+#include "coupling/step_limit.hpp"
 #include "coupling/stopwatch.hpp"
 
 namespace polder::coupling {
@@ -42,10 +44,9 @@ Simulation::Run<D>::Run(const Scene& s) : world(build_world<D>(s)) {
 }
 
 template <int D>
-StepLimit Simulation::Run<D>::step_limit() const {
-  const double h = world->skeleton.grid().spacing();
-  StepLimit limit{h / world->skeleton.wave_speed(scene.materials), "skeleton wave"};
-  return limit;
+double Simulation::Run<D>::automatic_step() const {
+  return scene.numerics.courant * world->skeleton.grid().spacing() /
+         world->skeleton.wave_speed(scene.materials);
 }
 
 template <int D>
@@ -281,8 +282,18 @@ double Simulation::smallest_step() const {
 double Simulation::largest_step() const {
   return run_->largest;
 }
+double Simulation::automatic_step() const {
+  return run_->automatic_step();
+}
 StepLimit Simulation::step_limit() const {
-  return run_->step_limit();
+  if (!run_->limit) {
+    const StabilityLimit found = find_stability_limit(run_->scene);
+    char text[160];
+    std::snprintf(text, sizeof text, "skeleton wave in %s'%s', %.3g of cell over wave speed",
+                  found.with_water ? "saturated " : "", found.material.c_str(), found.courant_number);
+    run_->limit = StepLimit{found.dt, text};
+  }
+  return *run_->limit;
 }
 double Simulation::equilibrium_force_ratio() const {
   return run_->force_ratio;

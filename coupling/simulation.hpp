@@ -17,10 +17,10 @@
 
 namespace polder::coupling {
 
-// What limits the time step.
+// The largest stable time step.
 struct StepLimit {
-  double dt = 0;       // [s], the limit itself
-  std::string reason;  // "skeleton wave", "particle speed"
+  double dt = 0;       // [s]
+  std::string reason;  // which wave in which soil
 };
 
 // One column of the history.
@@ -97,7 +97,8 @@ class Simulation {
   const std::string& step_reason() const;  // what limited it
   double smallest_step() const;
   double largest_step() const;
-  StepLimit step_limit() const;  // of the present state
+  double automatic_step() const;  // courant times cell over wave speed, at present [s]
+  StepLimit step_limit() const;   // of the soils at the start (step_limit.hpp); the first call takes a moment
   double equilibrium_force_ratio() const;
   double equilibrium_energy_ratio() const;
 

@@ -1,6 +1,8 @@
 // The simulation behind its interface, for one dimension. Private to coupling/.
 #pragma once
 
+#include <optional>
+
 #include "coupling/audit.hpp"
 #include "coupling/simulation.hpp"
 #include "coupling/world.hpp"
@@ -10,7 +12,7 @@ namespace polder::coupling {
 struct Simulation::Base {
   virtual ~Base() = default;
   virtual void step() = 0;
-  virtual StepLimit step_limit() const = 0;
+  virtual double automatic_step() const = 0;
   virtual std::vector<Column> history() const = 0;
   virtual long particles() const = 0;
   virtual long cells() const = 0;
@@ -35,6 +37,7 @@ struct Simulation::Base {
   bool laws_set = false;  // the present stage has begun
   std::vector<StageReport> reports;
   std::string reason;
+  std::optional<StepLimit> limit;  // found when first asked for
   Timing timing;
 
   bool finished() const { return stage >= static_cast<int>(scene.stages.size()); }
@@ -49,7 +52,7 @@ struct Simulation::Run final : Simulation::Base {
 
   explicit Run(const Scene& s);
   void step() override;
-  StepLimit step_limit() const override;
+  double automatic_step() const override;
   std::vector<Column> history() const override;
   long particles() const override;
   long cells() const override { return world->skeleton.grid().slots(); }

@@ -1,0 +1,173 @@
+#include "coupling/step_limit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "coupling/audit.hpp"
+#include "coupling/body_shape.hpp"
+#include "coupling/initial_state.hpp"
+#include "coupling/one_layer.hpp"
+#include "coupling/world.hpp"
+
+namespace polder::coupling {
+namespace {
+
+constexpr int kSteps = 120;        // of one trial
+constexpr double kGrowth = 1e3;    // of the energy between the first third and the end of an unstable trial
+constexpr double kRunaway = 1e12;  // growth at any time, before displacements matter
+constexpr double kBracket = 1.02;  // ratio of unstable and stable steps that ends the search
+constexpr double kSpeed = 1e-10;   // of the initial velocities, as a share of the wave speed
+
+// A patch of one soil: 5 cells along each axis, a wall on the lower sides, free surfaces on the upper sides
+// which cut their cells at different places.
+template <int D>
+Scene patch_of(const Scene& scene, const Body& body, bool wet) {
+  Scene s = scene;
+  const double h = scene.grid.cell;
+  const BodyShape shape(body, D);
+  s.grid.origin = {};
+  if (scene.grid.space == Space::axisymmetric) s.grid.origin[0] = shape.lower()[0];
+  constexpr double kReach[3] = {D == 2 ? 5.3 : 3.3, D == 2 ? 5.6 : 3.6, 3.8};
+  Body b = body;
+  b.polygon.clear();
+  b.centre.reset();
+  b.velocity = {};
+  b.spin = 0;
+  b.stress = {};
+  b.box = {{Vector3{}, Vector3{}}};
+  for (int d = 0; d < D; ++d) {
+    s.grid.size[d] = 8 * h;
+    (*b.box)[0][d] = s.grid.origin[d];
+    (*b.box)[1][d] = s.grid.origin[d] + kReach[d] * h;
+  }
+  s.bodies = {b};
+  // No weight; the mobility of the water is that of the scene's gravity all the same.
+  double gravity = 0;
+  for (double g : scene.gravity) gravity += g * g;
+  s.gravity = {};
+  mpm::MaterialParameters& m = s.materials[body.material];
+  if (gravity > 0) m.hydraulic_conductivity *= kStandardGravity / std::sqrt(gravity);
+  s.boundaries.clear();
+  s.water_boundaries.clear();
+  s.water.phreatic.clear();
+  s.water.outside_level.reset();
+  s.water.initial = WaterSpec::Initial::zero;
+  if (!wet) {
+    s.formulation = "dry";
+    // Soil above the phreatic line: its pore water is weight only.
+    const double water = m.porosity * scene.water.saturation_above * scene.water.density;
+    if (find_formulation(scene.formulation)->carrier != WaterCarrier::none)
+      m.density_solid += water / (1 - m.porosity);
+  }
+  return s;
+}
+
+template <int D>
+class Patch {
+ public:
+  explicit Patch(const Scene& scene) : world_(build_world<D>(scene)) {
+    world_->skeleton.set_laws(scene.materials, false);
+    wave_speed_ = world_->skeleton.wave_speed(scene.materials);
+    if (world_->pore_water) update_water_cells(*world_, 0.0);
+    audit_ = std::make_unique<Audit<D>>(*world_);
+  }
+
+  double wave_speed() const { return wave_speed_; }
+
+  bool stable(double dt) {
+    disturb();
+    double early = 0;
+    StepInput in;
+    in.dt = dt;
+    for (int i = 0; i < kSteps; ++i) {
+      if (world_->pore_water)
+        step_one_layer(*world_, in, 1);
+      else
+        step_dry(*world_, in);
+      const Totals t = audit_->totals(*world_);
+      const double energy = t.kinetic_energy + t.elastic_energy;
+      if (!(energy < kRunaway * initial_)) return false;
+      if (i < kSteps / 3)
+        early = std::max(early, energy);
+      else if (!(energy < kGrowth * early))
+        return false;
+    }
+    return true;
+  }
+
+ private:
+  // Random velocities, the same in every trial; no stress, no pressure.
+  void disturb() {
+    std::uint64_t state = 1;
+    for (auto& body : world_->skeleton.bodies()) {
+      ParticleSet<D>& set = *body;
+      for (int p = 0; p < set.slots(); ++p) {
+        for (Reals& s : set.stress) s[p] = 0;
+        if (set.id[p] < 0) continue;
+        for (int d = 0; d < D; ++d) {
+          state = state * 6364136223846793005ull + 1442695040888963407ull;
+          set.velocity[d][p] = kSpeed * wave_speed_ * (static_cast<double>(state >> 11) * 0x1p-52 - 1);
+        }
+      }
+      for (Reals& c : set.affine) std::fill(c.begin(), c.end(), 0.0);
+    }
+    if (world_->pore_water) {
+      Reals& p = world_->pore_water->pressure.pressure();
+      std::fill(p.begin(), p.end(), 0.0);
+    }
+    initial_ = audit_->totals(*world_).kinetic_energy;
+  }
+
+  std::unique_ptr<World<D>> world_;
+  std::unique_ptr<Audit<D>> audit_;
+  double wave_speed_, initial_ = 0;
+};
+
+template <int D>
+double limit_of(const Scene& scene, double& courant_number) {
+  Patch<D> patch(scene);
+  const double unit = scene.grid.cell / patch.wave_speed();
+  double low = unit, high = unit;
+  if (patch.stable(unit)) do
+      low = high, high *= 1.5;
+    while (high < 1e3 * unit && patch.stable(high));
+  else
+    do high = low, low /= 1.5;
+    while (low > 1e-3 * unit && !patch.stable(low));
+  while (high > kBracket * low) {
+    const double middle = std::sqrt(low * high);
+    (patch.stable(middle) ? low : high) = middle;
+  }
+  courant_number = low / unit;
+  return low;
+}
+
+template <int D>
+StabilityLimit find(const Scene& scene) {
+  StabilityLimit limit;
+  const bool water = find_formulation(scene.formulation)->carrier != WaterCarrier::none;
+  std::vector<std::pair<int, int>> seen;  // soils and lattices that have had their turn
+  for (const Body& body : scene.bodies) {
+    const std::pair<int, int> soil{body.material, body.particles_per_axis};
+    if (std::find(seen.begin(), seen.end(), soil) != seen.end()) continue;
+    seen.push_back(soil);
+    const mpm::MaterialParameters& m = scene.materials[body.material];
+    const bool porous = water && m.porosity > 0;
+    for (bool wet : {false, true}) {
+      if (wet ? !porous : porous && scene.water.phreatic.empty()) continue;
+      double courant_number = 0;
+      const double dt = limit_of<D>(patch_of<D>(scene, body, wet), courant_number);
+      if (limit.dt == 0 || dt < limit.dt) limit = {dt, m.name, wet, courant_number};
+    }
+  }
+  return limit;
+}
+
+}  // namespace
+
+StabilityLimit find_stability_limit(const Scene& scene) {
+  return scene.dimension() == 2 ? find<2>(scene) : find<3>(scene);
+}
+
+}  // namespace polder::coupling
