@@ -10,10 +10,10 @@
 //     = - (D v*)_c + sum_f A_f kappa_f [ (p_e - p_c)/d_f - rho_w g.n_f ]
 //       + chi sum_interior A_f Lam_f [ (p_e - p_c)/h - mean of the nodal gradients . n_f ],
 // Lam_f the mean mobility dt vol/m of the face's nodes (nodes without mass left out), kappa = k / gamma_w the
-// harmonic mean of the two cells (the cell's own at boundaries), d_f the distance between the two pressures (h, theta
-// h, h/2), chi* = chi on interior faces, else 0. The last sum is the momentum interpolation of Rhie & Chow
-// (1983, AIAA J. 21) on the total pressure; it removes the checkerboard which the compact operator cannot
-// see, and is zero for linear p.
+// harmonic mean of the two cells (the cell's own at boundaries), d_f the distance between the two pressures
+// (h, theta h, h/2), chi* = chi on interior faces, else 0. The last sum is the momentum interpolation of Rhie
+// & Chow (1983, AIAA J. 21) on the total pressure; it removes the checkerboard which the compact operator
+// cannot see, and is zero for linear p.
 //
 // Pressures [Pa], compression positive; zero in inactive cells. Discharges [m3/s] per metre of thickness
 // (plane strain), per radian (axisymmetric) or total (3D), positive when water leaves the soil.

@@ -224,8 +224,9 @@ TEST_CASE("verify tells what passes and what misses") {
 TEST_CASE("explain tells the plan") {
   const Result r = polder_program({"explain", kColumn, "--threads", "1"});
   CHECK(r.code == 0);
-  for (const char* part : {"formulation   one-layer", "particles     80 in 1 body", "step limit",
-                           "(skeleton wave in saturated '", "settle: dynamic", "discrete elements", "run time      about"})
+  for (const char* part :
+       {"formulation   one-layer", "particles     80 in 1 body", "step limit",
+        "(skeleton wave in saturated '", "settle: dynamic", "discrete elements", "run time      about"})
     CHECK_MESSAGE(r.out.find(part) != std::string::npos, part);
   CHECK(polder_program({"explain", kColumn, "--set", "formulation=dry"}).out.find("pore water  none") !=
         std::string::npos);
