@@ -101,7 +101,7 @@ mpm::MoveResult step_one_layer(World<D>& world, const StepInput& in, long step) 
   skeleton.constrain(end, in.dt);
   w.correction.clear();
   if (in.water_flows) {
-    const Reals& strain_velocity = skeleton.strain_velocity(w.cell_sums, end, in.dt);
+    const Reals& strain_velocity = skeleton.strain_velocity(end, in.dt);
     const Reals& sums = skeleton.sums();
     w.mobility.resize(skeleton.grid().slots());
     parallel_for(skeleton.grid().slots(), [&](int i) {

@@ -151,8 +151,8 @@ void Skeleton<D>::constrain(double time, double dt) {
 }
 
 template <int D>
-void Skeleton<D>::remap(double time, double dt) {
-  update_velocities(transfer_, options_.flip, v_old_, v_new_, &v_map_);
+void Skeleton<D>::remap(double flip, const Reals& from, const Reals& to, double time, double dt) {
+  update_velocities(transfer_, flip, from, to, &v_map_);
   parallel_for(grid_.blocks(), [&](int block) {
     for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
       const double mass = sums_[static_cast<std::size_t>(i) * kSum], inverse = mass > 0 ? 1 / mass : 0;
@@ -160,27 +160,25 @@ void Skeleton<D>::remap(double time, double dt) {
     }
   });
   boundaries_.apply(time, dt, sums_, v_map_, false, false);
+  mapped_ = true;
 }
 
 template <int D>
-const Reals& Skeleton<D>::strain_velocity(const Reals& cells, double time, double dt) {
+const Reals& Skeleton<D>::strain_velocity(double time, double dt) {
   if (!options_.musl) return v_new_;
-  // The rows of the body with the fewest particles smooth most.
-  double largest = 0;
-  for (const auto& body : bodies_) largest = std::max(largest, body->reference_half_size);
-  const int particles_per_axis = std::max(1, static_cast<int>(std::lround(0.5 * grid_.spacing() / largest)));
-  map_by_cells(transfer_, cells, particles_per_axis, options_.flip, v_old_, v_new_, v_map_);
-  boundaries_.apply(time, dt, sums_, v_map_, false, false);
+  if (!mapped_) remap(options_.flip, v_old_, v_new_, time, dt);
   return v_map_;
 }
 
 template <int D>
 void Skeleton<D>::correct(double time, double dt, const Reals& correction) {
   const std::size_t stride = static_cast<std::size_t>(Grid<D>::kCells) * kVector;
+  if (options_.musl) v_before_ = v_new_;
   parallel_for(grid_.blocks(), [&](int block) {
     for (std::size_t i = block * stride; i < (block + 1) * stride; ++i) v_new_[i] += correction[i];
   });
   boundaries_.apply(time, dt, sums_, v_new_, false, false);
+  if (options_.musl) remap(1.0, v_before_, v_new_, time, dt);
 }
 
 template <int D>
@@ -193,12 +191,12 @@ MoveResult Skeleton<D>::gather(double time, double dt) {
   // Points, and the surfaces that carry loads, move with the velocity that strains the soil. Under MUSL v_new
   // differs from it where a node carries little mass; positions and strains would part company there, and
   // stressed soil at a surface start to oscillate.
-  if (options_.musl) remap(time + dt, dt);
-  const Reals& v = options_.musl ? v_map_ : v_new_;
+  const Reals& v = strain_velocity(time + dt, dt);
   o.update_velocity = !options_.musl && options_.affine == AffineKind::none;
   MoveResult r = update_stress_and_move(transfer_, o, options_.musl ? nullptr : &v_old_, v, v);
   if constexpr (D == 2)
     for (SurfaceLoad& load : loads_) load.move(grid_, options_.shape, dt, v);
+  mapped_ = false;
   travelled_ += r.largest_displacement;
   if (!r.finite || r.largest_displacement > kSkin) {
     const ParticleSet<D>& set = *bodies_[r.fastest_body];

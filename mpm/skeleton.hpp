@@ -73,15 +73,16 @@ class Skeleton {
   // v_new = v_trial under the boundaries at `time`; keeps their reactions and the out-of-balance force.
   void constrain(double time, double dt);
 
-  // The velocities that strain the soil in this step if nothing corrects v_new: under MUSL an estimate of the
-  // nodal velocities of the particles' momenta updated with v_new, from the masses of the cells (as
-  // scatter_cells gave them), else v_new. time: end of the step.
-  //
-  // Pressure must be projected out of these: under MUSL a pressure that makes v_new free of divergence acts
-  // ahead of its strains by a part of the step, and feeds energy to undrained motion. An estimate will do,
-  // because it differs from the truth only in how particles smooth the change of velocity in one step.
-  const Reals& strain_velocity(const Reals& cells, double time, double dt);
-  // Adds `correction` [slots * 4] to v_new under the boundaries (without friction, which has acted).
+  // The velocities that the strains of this step come from: under MUSL the nodal velocities of the particles'
+  // momenta updated with v_new (this updates the particles), else v_new. gather() does this itself where it
+  // was not called. time: end of the step.
+  const Reals& strain_velocity(double time, double dt);
+  // Adds `correction` [slots * 4] to v_new under the boundaries (without friction, which has acted), and
+  // under MUSL to the particles and their momenta. Pressure must be projected out of the velocities that
+  // strain the soil: under MUSL a pressure that makes v_new free of divergence acts ahead of its strains by a
+  // part of the step, and feeds energy to undrained motion. And it must reach the strains the way all
+  // momentum does, through the particles: added to the strain velocity as it stands it shortens the stable
+  // step.
   void correct(double time, double dt, const Reals& correction);
 
   // Particles from v_new. Returns what the step moved; throws NumericalError naming the point when a value is
@@ -111,8 +112,9 @@ class Skeleton {
   double wave_speed(const std::vector<MaterialParameters>& materials) const;
 
  private:
-  // Particle velocities from the step's nodal ones, and v_map_ from their momenta.
-  void remap(double time, double dt);
+  // Particle velocities changed by the step from one nodal velocity to another, and v_map_ from their
+  // momenta.
+  void remap(double flip, const Reals& from, const Reals& to, double time, double dt);
   void allocate();
 
   Grid<D> grid_;
@@ -122,7 +124,8 @@ class Skeleton {
   std::vector<std::unique_ptr<ParticleSet<D>>> bodies_;
   std::vector<std::shared_ptr<const void>> laws_;  // one for each body
   Transfer<D> transfer_;
-  Reals sums_, v_old_, v_trial_, v_new_, v_map_;
+  Reals sums_, v_old_, v_trial_, v_new_, v_map_, v_before_;
+  bool mapped_ = false;  // v_map_ and the particles' velocities belong to v_new_
   double travelled_ = 1e9;
   double mass_floor_ = 0;
   double unbalanced_ = 0, load_norm_ = 0;

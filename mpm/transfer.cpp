@@ -24,13 +24,6 @@ void update_velocities(Transfer<D>& transfer, double flip, const Reals& v_old, c
 }
 
 template <int D>
-void map_by_cells(const Transfer<D>& transfer, const Reals& cells, int particles_per_axis, double flip,
-                  const Reals& v_old, const Reals& v_new, Reals& mapped) {
-  mapped.resize(static_cast<std::size_t>(transfer.grid->slots()) * Transfer<D>::kVector);
-  POLDER_SIMD_CALL(map_by_cells, transfer, cells, particles_per_axis, flip, v_old, v_new, mapped);
-}
-
-template <int D>
 MoveResult update_stress_and_move(Transfer<D>& transfer, const MoveOptions& options, const Reals* v_old,
                                   const Reals& v_move, const Reals& v_gradient) {
   return POLDER_SIMD_CALL(update_stress_and_move, transfer, options, v_old, v_move, v_gradient);
@@ -46,14 +39,12 @@ std::shared_ptr<const void> make_law_handle(int dimension, const MaterialParamet
   return POLDER_SIMD_CALL(make_law_handle, dimension, material, plastic);
 }
 
-#define POLDER_INSTANTIATE(D)                                                                              \
-  template void scatter_state<D>(Transfer<D>&, AffineKind, Reals&);                                        \
-  template void scatter_cells<D>(Transfer<D>&, Reals&);                                                    \
-  template void update_velocities<D>(Transfer<D>&, double, const Reals&, const Reals&, Reals*);            \
-  template void map_by_cells<D>(const Transfer<D>&, const Reals&, int, double, const Reals&, const Reals&, \
-                                Reals&);                                                                   \
-  template MoveResult update_stress_and_move<D>(Transfer<D>&, const MoveOptions&, const Reals*,            \
-                                                const Reals&, const Reals&);                               \
+#define POLDER_INSTANTIATE(D)                                                                   \
+  template void scatter_state<D>(Transfer<D>&, AffineKind, Reals&);                             \
+  template void scatter_cells<D>(Transfer<D>&, Reals&);                                         \
+  template void update_velocities<D>(Transfer<D>&, double, const Reals&, const Reals&, Reals*); \
+  template MoveResult update_stress_and_move<D>(Transfer<D>&, const MoveOptions&, const Reals*, \
+                                                const Reals&, const Reals&);                    \
   template void sum_tiles<D>(Transfer<D>&, int, Reals&);
 POLDER_INSTANTIATE(2)
 POLDER_INSTANTIATE(3)

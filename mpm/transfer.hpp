@@ -41,7 +41,6 @@ struct Transfer {
   static constexpr int kVector = 4;               // numbers a node in a velocity array
   static constexpr int kVolume = D == 2 ? 5 : 7;  // where V sits in a sum
   static constexpr int kCellSum = 4;
-  static constexpr int kCellMass = 3;  // where the mass sits in a cell's sums
 
   const Grid<D>* grid = nullptr;
   Space space = Space::plane_strain;
@@ -57,8 +56,8 @@ struct Transfer {
 template <int D>
 void scatter_state(Transfer<D>& transfer, AffineKind affine, Reals& sums);
 
-// Particles to cells by the overlap of their domains: {V of wet soil, V of its solid, conductivity * V, mass
-// of all bodies} into cells [slots * kCellSum].
+// Particles to cells by the overlap of their domains: {V of wet soil, V of its solid, conductivity * V, V of
+// all soil} into cells [slots * kCellSum].
 template <int D>
 void scatter_cells(Transfer<D>& transfer, Reals& cells);
 
@@ -68,13 +67,6 @@ void scatter_cells(Transfer<D>& transfer, Reals& cells);
 template <int D>
 void update_velocities(Transfer<D>& transfer, double flip, const Reals& v_old, const Reals& v_new,
                        Reals* momentum);
-
-// What update_velocities would map to the nodes, estimated from the masses of the cells ([slots * kCellSum],
-// with n particles an axis in regular rows): flip v_old + P (v_new - flip v_old), P the smoothing by the
-// particles. Particles are not touched; costs a tenth of the real thing. mapped [slots * kVector].
-template <int D>
-void map_by_cells(const Transfer<D>& transfer, const Reals& cells, int particles_per_axis, double flip,
-                  const Reals& v_old, const Reals& v_new, Reals& mapped);
 
 struct MoveOptions {
   double dt = 0;

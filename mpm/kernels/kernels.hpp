@@ -10,8 +10,6 @@
   POLDER_SIMD_DECLARE(void, scatter_cells, mpm::Transfer<D>&)                                               \
   POLDER_SIMD_DECLARE(void, sum_tiles, mpm::Transfer<D>&, int, Reals&)                                      \
   POLDER_SIMD_DECLARE(void, update_velocities, mpm::Transfer<D>&, double, const Reals&, const Reals&, bool) \
-  POLDER_SIMD_DECLARE(void, map_by_cells, const mpm::Transfer<D>&, const Reals&, int, double, const Reals&, \
-                      const Reals&, Reals&)                                                                 \
   POLDER_SIMD_DECLARE(mpm::MoveResult, update_stress_and_move, mpm::Transfer<D>&, const mpm::MoveOptions&,  \
                       const Reals*, const Reals&, const Reals&)
 

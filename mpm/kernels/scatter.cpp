@@ -164,18 +164,13 @@ void scatter_cells_of(mpm::Transfer<D>& transfer) {
     const BlockFrame<D> frame(grid, block);
     for (const mpm::Body<D>& body : transfer.bodies) {
       const ParticleSet<D>& set = *body.particles;
+      if (set.wet.empty()) continue;  // a body without pores
       const auto range = set.ranges[block];
       for (int p = range.first; p < range.first + range.count; p += kLanes) {
         const Pack solid = load(&set.mass[p]), volume = select(solid > 0, load(&set.volume[p]), Pack{});
-        const Pack grains = solid * (1 / set.density_solid);
-        Pack fields[4] = {Pack{}, Pack{}, Pack{}, solid};
-        if (!set.pore_water.empty()) fields[3] += load(&set.pore_water[p]) * (volume - grains);
-        if (!set.wet.empty()) {  // a body with pores
-          const Pack wet = load(&set.wet[p]);
-          fields[0] = wet * volume;
-          fields[1] = wet * grains;
-          fields[2] = fields[0] * load(&set.conductivity[p]);
-        }
+        const Pack wet = load(&set.wet[p]) * volume;
+        Pack fields[4] = {wet, load(&set.wet[p]) * solid * (1 / set.density_solid),
+                          wet * load(&set.conductivity[p]), volume};
         Reg<4> node[kLanes];
         to_nodes<4>(fields, node);
         Mask start = Mask{};
