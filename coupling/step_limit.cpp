@@ -19,8 +19,8 @@ constexpr double kRunaway = 1e12;  // growth at any time, before displacements m
 constexpr double kBracket = 1.02;  // ratio of unstable and stable steps that ends the search
 constexpr double kSpeed = 1e-10;   // of the initial velocities, as a share of the wave speed
 
-// A patch of one soil: 5 cells along each axis, a wall on the lower sides, free surfaces on the upper sides
-// which cut their cells at different places.
+// A patch of one soil: 5 cells along each axis (3 in 3D), a wall on the lower sides, free surfaces on the
+// upper sides which cut their cells at different places.
 template <int D>
 Scene patch_of(const Scene& scene, const Body& body, bool wet) {
   Scene s = scene;
@@ -28,7 +28,11 @@ Scene patch_of(const Scene& scene, const Body& body, bool wet) {
   const BodyShape shape(body, D);
   s.grid.origin = {};
   if (scene.grid.space == Space::axisymmetric) s.grid.origin[0] = shape.lower()[0];
-  constexpr double kReach[3] = {D == 2 ? 5.3 : 3.3, D == 2 ? 5.6 : 3.6, 3.8};
+  // Surfaces where they hurt most under USL: where a node beyond the last points carries next to nothing.
+  // With B-splines that is from 3/4 of a cell on, where the lattice gains a row; with GIMP, a particle
+  // spacing above a node.
+  const double whole = D == 2 ? 5 : 3;
+  const double reach[3] = {whole + 0.75, whole + 1.0 / body.particles_per_axis, whole + 0.3};
   Body b = body;
   b.polygon.clear();
   b.centre.reset();
@@ -39,7 +43,7 @@ Scene patch_of(const Scene& scene, const Body& body, bool wet) {
   for (int d = 0; d < D; ++d) {
     s.grid.size[d] = 8 * h;
     (*b.box)[0][d] = s.grid.origin[d];
-    (*b.box)[1][d] = s.grid.origin[d] + kReach[d] * h;
+    (*b.box)[1][d] = s.grid.origin[d] + reach[d] * h;
   }
   s.bodies = {b};
   // No weight; the mobility of the water is that of the scene's gravity all the same.

@@ -1,0 +1,36 @@
+// The state of a simulation in memory: what a checkpoint keeps, to be compared bit by bit or loaded again.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "coupling/simulation.hpp"
+
+namespace polder::verify {
+
+using coupling::Simulation;
+
+class MemoryState final : public coupling::StateVisitor {
+ public:
+  bool reading() const override { return reading_; }
+  void reals(const std::string& name, Reals& values) override;
+  void integers(const std::string& name, std::vector<int>& values) override;
+  void number(const std::string& name, double& value) override;
+  void count(const std::string& name, std::int64_t& value) override;
+
+  void save(Simulation& simulation);
+  void load(Simulation& simulation);
+  // Names of what differs, bit by bit.
+  std::vector<std::string> differences(const MemoryState& other) const;
+
+  std::map<std::string, Reals> arrays;
+  std::map<std::string, std::vector<int>> lists;
+  std::map<std::string, double> numbers;
+  std::map<std::string, std::int64_t> counts;
+
+ private:
+  bool reading_ = false;
+};
+
+}  // namespace polder::verify
