@@ -1,10 +1,13 @@
 #include "app/check_scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "app/codecs.hpp"
+#include "app/columns.hpp"
 #include "app/geometry.hpp"
+#include "coupling/quantities.hpp"
 
 namespace polder::app {
 namespace {
@@ -82,6 +85,20 @@ void check_segment(const Boundary& b, const std::string& key, Reader& reader) {
                  std::string(1, "xyz"[axis]) + " = " + format_number(at));
 }
 
+// The names hold those of boundaries, so they are known only when the whole case is.
+void check_column(const coupling::Measure& m, std::size_t i, Reader& reader) {
+  if (reader.failed("boundary") || reader.failed("water") || reader.failed("formulation")) return;
+  std::vector<std::string> names, columns;
+  for (const coupling::Quantity& q : coupling::history_quantities(reader.scene)) {
+    names.push_back(q.name);
+    columns.push_back(q.unit.empty() ? q.name : q.name + "[" + q.unit + "]");
+  }
+  if (find_column(columns, m.quantity).empty())
+    reader.error(item_key("measure", i) + ".quantity",
+                 "the history has no column \"" + m.quantity + "\"" + did_you_mean(m.quantity, names),
+                 join(names));
+}
+
 }  // namespace
 
 void check_names(Reader& reader) {
@@ -122,6 +139,14 @@ void check_measures(Reader& reader) {
   const Scene& scene = reader.scene;
   for (std::size_t i = 0; i < scene.measures.size(); ++i) {
     const auto& m = scene.measures[i];
+    if (m.kind == Kind::body && !reader.failed(item_key("measure", i)) && !reader.failed("body")) {
+      std::vector<std::string> bodies;
+      for (const auto& body : scene.bodies) bodies.push_back(body.name);
+      if (std::find(bodies.begin(), bodies.end(), m.body) == bodies.end())
+        reader.error(item_key("measure", i) + ".body",
+                     "the case has no body \"" + m.body + "\"" + did_you_mean(m.body, bodies), join(bodies));
+    }
+    if (m.kind == Kind::history && !reader.failed(item_key("measure", i))) check_column(m, i, reader);
     const std::string key = item_key("measure", i) + ".at";
     if (m.kind == Kind::history || reader.failed("grid") || !reader.given(key) || reader.failed(key))
       continue;
@@ -145,11 +170,16 @@ void check_measures(Reader& reader) {
     const auto& e = scene.expectations[i];
     const std::string key = item_key("expect", i) + ".measure";
     if (reader.failed(key) || !reader.given(key)) continue;
-    bool known = false;
-    for (const std::string& n : names) known = known || n == e.measure;
-    if (!known)
+    const auto measure = std::find_if(scene.measures.begin(), scene.measures.end(),
+                                      [&](const auto& m) { return m.name == e.measure; });
+    if (measure == scene.measures.end())
       reader.error(key, "the case has no measure \"" + e.measure + "\"" + did_you_mean(e.measure, names),
                    names.empty() ? "[[measure]]" : join(names));
+    else if (measure->is_profile() && e.norm == "last" && !reader.failed(item_key("expect", i)))
+      reader.error(item_key("expect", i) + (reader.given(item_key("expect", i) + ".norm") ? ".norm" : ""),
+                   "a profile has many values, none is the last",
+                   "norm = \"l2\", \"max\" with a reference; "
+                   "\"largest\", \"smallest\", \"magnitude\", \"mean\"");
     std::vector<std::string> stages;
     bool known_stage = e.from_stage.empty();
     for (const auto& stage : scene.stages) {

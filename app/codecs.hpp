@@ -43,6 +43,7 @@ Codec<std::vector<double>> numbers(const Dimension& dimension, const Range& rang
 
 Codec<coupling::Vector3> vector(const Dimension& dimension);         // as many components as the space has
 Codec<std::vector<coupling::Vector3>> points(std::size_t at_least);  // list of [x, y]
+Codec<std::array<coupling::Vector3, 2>> box();                       // [lower corner, upper corner]
 
 // A number, or { time = [...], value = [...] }.
 Codec<coupling::TimeTable> time_table(const Dimension& dimension, const Range& range = {});

@@ -336,4 +336,32 @@ Codec<Place> place() {
   return c;
 }
 
+Codec<std::array<Vector3, 2>> box() {
+  const Codec<std::vector<Vector3>> corners = points(2);
+  Codec<std::array<Vector3, 2>> c;
+  c.type = "[lower corner, upper corner] [m]";
+  c.schema = corners.schema;
+  c.read = [corners](const Node& n, const std::string& key, std::array<Vector3, 2>& b, Reader& reader) {
+    std::vector<Vector3> list;
+    if (!corners.read(n, key, list, reader)) return false;
+    if (list.size() != 2) {
+      reader.error(key, std::to_string(list.size()) + " corners", "two: the lower and the upper one");
+      return false;
+    }
+    for (std::size_t i = 0; i < static_cast<std::size_t>(reader.dimension()); ++i)
+      if (!(list[1][i] > list[0][i])) {
+        reader.error(
+            key, "empty box: the upper corner is not beyond the lower one along " + std::string(1, "xyz"[i]),
+            "[lower corner, upper corner]");
+        return false;
+      }
+    b = {list[0], list[1]};
+    return true;
+  };
+  c.write = [corners](const std::array<Vector3, 2>& b, const Scene& scene) {
+    return corners.write({b[0], b[1]}, scene);
+  };
+  return c;
+}
+
 }  // namespace polder::app

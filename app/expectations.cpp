@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "app/columns.hpp"
-#include "app/tables.hpp"
+#include "app/digits.hpp"
+#include "app/measured.hpp"
 #include "core/error.hpp"
-#include "io/csv.hpp"
+#include "core/units.hpp"
 
 namespace polder::app {
 namespace {
@@ -15,105 +14,51 @@ namespace {
 using coupling::Expectation;
 using coupling::Measure;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-struct Curve {
-  std::vector<double> time, value;
-};
-
-double interpolate(const std::vector<double>& x, const std::vector<double>& y, double at) {
-  const auto after = std::upper_bound(x.begin(), x.end(), at);
-  if (after == x.begin()) return y.front();
-  if (after == x.end()) return y.back();
-  const auto i = static_cast<std::size_t>(after - x.begin());
-  return y[i - 1] + (at - x[i - 1]) / (x[i] - x[i - 1]) * (y[i] - y[i - 1]);
-}
-
-// Column of times: the one called so, else the first.
-std::string time_column(const CsvTable& table) {
-  for (const char* name : {"time", "t"})
-    if (const std::string c = find_column(table.columns(), name); !c.empty()) return c;
-  return table.columns().front();
-}
-
-Curve read_curve(const CsvTable& table, const std::string& time, const std::string& value) {
-  const auto t = table.column(time), v = table.column(value);
-  return {{t.begin(), t.end()}, {v.begin(), v.end()}};
-}
-
-Curve read_measure(const Measure& m, const RunFolder& folder) {
-  bool in_history = false;
-  const std::string name = measure_column(m, in_history);
-  const CsvTable table(in_history ? folder.history() : folder.probes(),
-                       in_history ? std::vector<std::string>{"dt_limit"} : std::vector<std::string>{});
-  const std::string column = find_column(table.columns(), name);
-  if (column.empty()) throw InputError("the run has no column \"" + name + "\"");
-  return read_curve(table, "time[s]", column);
-}
-
-Curve read_reference(const Expectation& e, const std::filesystem::path& folder) {
-  const CsvTable table(folder / e.reference);
-  const std::string column =
-      e.column.empty() ? table.columns().at(1) : find_column(table.columns(), e.column);
-  return read_curve(table, time_column(table), column);
-}
-
-// Time counted from the start of a stage; what lies before it goes.
-void count_from(Curve& c, double start) {
-  const auto first = std::lower_bound(c.time.begin(), c.time.end(), start * (1 - 1e-9)) - c.time.begin();
-  c.time.erase(c.time.begin(), c.time.begin() + first);
-  c.value.erase(c.value.begin(), c.value.begin() + first);
-  for (double& t : c.time) t -= start;
-}
-
-double number_of(const std::string& norm, const std::vector<double>& values) {
-  if (norm == "largest") return *std::max_element(values.begin(), values.end());
-  if (norm == "smallest") return *std::min_element(values.begin(), values.end());
-  return values.back();
-}
-
 double error_of_number(double number, double reference) {
   return std::abs(number - reference) / (reference != 0 ? std::abs(reference) : 1.0);
 }
 
-double error_of(const Expectation& e, const Curve& measured, const std::filesystem::path& folder) {
-  if (measured.value.empty()) return kNone;
-  if (e.value) return error_of_number(number_of(e.norm, measured.value), *e.value);
-  const Curve reference = read_reference(e, folder);
-  if (reference.value.empty()) return kNone;
-  if (e.norm == "l2" || e.norm == "max")
-    return curve_error(e.norm, measured.time, measured.value, reference.time, reference.value);
-  return error_of_number(number_of(e.norm, measured.value), number_of(e.norm, reference.value));
+bool compares_curves(const Expectation& e) {
+  return !e.reference.empty() && (e.norm == "l2" || e.norm == "max");
+}
+
+std::string bounds_text(const Expectation& e) {
+  if (!e.at_most) return ">= " + format_number(*e.at_least);
+  if (!e.at_least) return "<= " + format_number(*e.at_most);
+  return format_number(*e.at_least) + " .. " + format_number(*e.at_most);
+}
+
+void compare(const Expectation& e, const Measure& m, const Curve& measured,
+             const std::filesystem::path& case_folder, ExpectationResult& r) {
+  const bool profile = m.is_profile();
+  if (!compares_curves(e)) r.measured = number_of(e.norm, measured, profile);
+  if (e.has_bounds()) {
+    r.expected = bounds_text(e);
+    if (!std::isnan(r.measured))
+      r.error = std::max(
+          {0.0, e.at_least ? *e.at_least - r.measured : 0.0, e.at_most ? r.measured - *e.at_most : 0.0});
+    return;
+  }
+  if (e.value) {
+    r.expected = format_number(*e.value);
+    r.error = error_of_number(r.measured, *e.value);
+    return;
+  }
+  Curve reference = read_reference(CsvTable(case_folder / e.reference), e.column, profile);
+  if (e.time && !profile) reference = cut(reference, *e.time);
+  if (reference.value.empty()) return;
+  if (compares_curves(e)) {
+    r.expected = std::filesystem::path(e.reference).filename().string();
+    r.error = profile ? profile_error(e.norm, measured, reference)
+                      : curve_error(e.norm, measured.x, measured.value, reference.x, reference.value);
+    return;
+  }
+  const double expected = number_of(e.norm, reference, profile);
+  r.expected = digits(expected, 5);
+  r.error = error_of_number(r.measured, expected);
 }
 
 }  // namespace
-
-double curve_error(const std::string& norm, const std::vector<double>& time, const std::vector<double>& value,
-                   const std::vector<double>& reference_time, const std::vector<double>& reference) {
-  if (time.empty() || reference_time.size() < 2) return kNone;
-  const double span = reference_time.back() - reference_time.front();
-  constexpr double kEnds = 0.01;  // share of the reference's duration by which the curve may be shorter
-  if (!(span > 0) || time.back() < reference_time.back() - kEnds * span ||
-      time.front() > reference_time.front() + kEnds * span)
-    return kNone;
-  double difference = 0, size = 0;
-  const auto miss = [&](std::size_t i) { return interpolate(time, value, reference_time[i]) - reference[i]; };
-  if (norm == "max") {
-    for (std::size_t i = 0; i < reference.size(); ++i) {
-      const double m = std::abs(miss(i));
-      if (std::isnan(m)) return kNone;  // std::max would lose it
-      difference = std::max(difference, m);
-      size = std::max(size, std::abs(reference[i]));
-    }
-    return difference / (size > 0 ? size : 1.0);
-  }
-  for (std::size_t i = 1; i < reference.size(); ++i) {
-    const double dt = reference_time[i] - reference_time[i - 1];
-    difference += dt / 2 * (miss(i - 1) * miss(i - 1) + miss(i) * miss(i));
-    size += dt / 2 * (reference[i - 1] * reference[i - 1] + reference[i] * reference[i]);
-  }
-  return std::sqrt(difference / (size > 0 ? size : span));
-}
 
 std::vector<ExpectationResult> compare_with_expectations(const coupling::Simulation& simulation,
                                                          const RunFolder& folder,
@@ -121,27 +66,41 @@ std::vector<ExpectationResult> compare_with_expectations(const coupling::Simulat
   const coupling::Scene& scene = simulation.scene();
   std::vector<ExpectationResult> results;
   for (const Expectation& e : scene.expectations) {
-    ExpectationResult r{e.measure, e.norm, kNone, e.tolerance, false, ""};
+    ExpectationResult r;
+    r.measure = e.measure, r.norm = e.norm, r.tolerance = e.has_bounds() ? 0 : e.tolerance;
     const auto measure = std::find_if(scene.measures.begin(), scene.measures.end(),
                                       [&](const Measure& m) { return m.name == e.measure; });
+    const bool at = measure->is_profile() || e.norm == "last";
+    if (e.time) r.when = (at ? "at " : "to ") + format_number(*e.time) + " s";
     double start = 0;
     for (const coupling::StageReport& s : simulation.stages()) {
       if (s.name == e.from_stage) break;
       if (!e.from_stage.empty()) start += s.time;
     }
     try {
-      Curve curve = read_measure(*measure, folder);
-      count_from(curve, start);
-      r.error = error_of(e, curve, case_folder);
-      if (std::isnan(r.error))
-        r.problem = "the measure has no number for it, or the run ends before the reference";
+      const double end = e.time ? start + *e.time : simulation.time();
+      compare(e, *measure, read_measure(*measure, folder, start, end), case_folder, r);
+      if (e.time && end > simulation.time() * (1 + 1e-9))
+        r.error = std::nan(""), r.problem = "the run ends before";
+      else if (std::isnan(r.error))
+        r.problem = measure->is_profile()
+                        ? "the profile has no number for it, or lies outside the reference"
+                        : "the measure has no number for it, or the run ends before the reference";
     } catch (const InputError& problem) {
       r.problem = problem.what();
     }
-    r.pass = r.error <= e.tolerance;
+    r.pass = r.error <= r.tolerance;
     results.push_back(std::move(r));
   }
   return results;
+}
+
+std::string describe(const ExpectationResult& r) {
+  std::string text = r.measure + " (" + r.norm + (r.when.empty() ? "" : ", " + r.when) + "): ";
+  if (!std::isnan(r.measured)) text += digits(r.measured, 5) + ", expected " + r.expected + ", ";
+  if (!r.problem.empty()) return text + r.problem;
+  if (r.tolerance == 0) return text + (r.pass ? "within" : "beyond by " + digits(r.error, 3));
+  return text + "error " + digits(r.error, 3) + ", tolerance " + format_number(r.tolerance);
 }
 
 }  // namespace polder::app

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,11 @@ namespace polder::app {
 
 struct ExpectationResult {
   std::string measure, norm;
-  double error = 0;  // relative where the reference is not 0, absolute otherwise; NaN: could not be compared
+  std::string when;  // "at 0.5 s", "to 0.5 s"; empty: at the end, over the whole run
+  double measured = std::numeric_limits<double>::quiet_NaN();  // NaN: a curve, no number
+  std::string expected;                                        // as text: a number, bounds, a file
+  // Relative where the reference is not 0, absolute otherwise; beyond a bound. NaN: could not be compared.
+  double error = std::numeric_limits<double>::quiet_NaN();
   double tolerance = 0;
   bool pass = false;
   std::string problem;  // why it could not be compared
@@ -23,11 +28,7 @@ std::vector<ExpectationResult> compare_with_expectations(const coupling::Simulat
                                                          const RunFolder& folder,
                                                          const std::filesystem::path& case_folder);
 
-// Error of a curve against a reference at the reference's times, the curve linear between its points.
-//   l2:  sqrt(integral (m - r)^2 dt / integral r^2 dt), trapezoidal rule; the denominator is the time where r
-//   is 0 max: max |m - r| / max |r|; the denominator is 1 where r is 0
-// NaN with fewer than two common times, or if the curve ends before the reference.
-double curve_error(const std::string& norm, const std::vector<double>& time, const std::vector<double>& value,
-                   const std::vector<double>& reference_time, const std::vector<double>& reference);
+// "drop (l2, at 0.5 s): error 0.0031, tolerance 0.01" for logs.
+std::string describe(const ExpectationResult& result);
 
 }  // namespace polder::app

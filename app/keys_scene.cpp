@@ -122,6 +122,14 @@ const Table<Scene>& case_keys() {
   static const Table<Scene> table = [] {
     Table<Scene> t;
     t.add("title", text(), &Scene::title, "What the case is, for people.");
+    t.add(
+        "effort",
+        choice<coupling::Effort>({{"quick", coupling::Effort::quick},
+                                  {"normal", coupling::Effort::normal},
+                                  {"extensive", coupling::Effort::extensive}}),
+        &Scene::effort,
+        "How long it takes, for `polder verify`: quick, a few seconds, is all that --quick runs; normal, up "
+        "to a minute; extensive runs only with --all or by name.");
     t.add("formulation", word(formulation_names(true), formulation_names(false)), &Scene::formulation,
           "How the pore water is computed; dry: not at all.");
     t.add("grid", one_table(grid_keys()), &Scene::grid, "The background grid.").required();

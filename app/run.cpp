@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 
@@ -11,6 +12,7 @@
 #include "app/digits.hpp"
 #include "app/frames.hpp"
 #include "app/interrupt.hpp"
+#include "app/profiles.hpp"
 #include "app/size_estimate.hpp"
 #include "app/summary.hpp"
 #include "app/tables.hpp"
@@ -55,6 +57,7 @@ class Run {
 
  private:
   void restore();
+  void copy_references() const;
   void announce();
   void step();
   bool is_over() const { return simulation_.finished() || simulation_.time() >= until_; }
@@ -69,11 +72,38 @@ class Run {
   Clock clock_;
   Simulation simulation_;
   Tables tables_;
+  Profiles profiles_;
   std::unique_ptr<Frames> frames_;
   RunSummary summary_;
   double until_ = 0;
   double next_checkpoint_ = 0;  // wall clock [s]
 };
+
+constexpr const char* kReferencePrefix = "reference_";
+
+// What a reference is called in the run's folder, where the resolved case finds it and pictures show it.
+std::string reference_name(const Scene& scene, const std::string& reference) {
+  int before = 0;  // others of the same name in other folders
+  const std::string name = std::filesystem::path(reference).filename().string();
+  std::vector<std::string> seen;
+  for (const coupling::Expectation& e : scene.expectations) {
+    if (e.reference == reference) break;
+    if (std::filesystem::path(e.reference).filename() != name ||
+        std::find(seen.begin(), seen.end(), e.reference) != seen.end())
+      continue;
+    seen.push_back(e.reference);
+    ++before;
+  }
+  return (name.starts_with(kReferencePrefix) ? "" : kReferencePrefix) +
+         (before > 0 ? std::to_string(before + 1) + "_" : "") + name;
+}
+
+Scene with_references_beside(const Scene& scene) {
+  Scene resolved = scene;
+  for (coupling::Expectation& e : resolved.expectations)
+    if (!e.reference.empty()) e.reference = reference_name(scene, e.reference);
+  return resolved;
+}
 
 RunFolder::Mode folder_mode(const RunOptions& o) {
   return o.restart     ? RunFolder::Mode::restart
@@ -89,24 +119,44 @@ Log::Options log_options(const RunOptions& o, const RunFolder& folder) {
   return log;
 }
 
+CsvWriter::Mode table_mode(const RunOptions& o) {
+  return o.restart ? CsvWriter::Mode::append : CsvWriter::Mode::fresh;
+}
+
 Run::Run(const RunOptions& options, Scene scene)
     : options_(options),
-      resolved_(write_case(scene)),
+      resolved_(write_case(with_references_beside(scene))),
       folder_(options.folder, folder_mode(options)),
       log_(log_options(options, folder_)),
       simulation_(scene),
-      tables_(simulation_, folder_, options.restart ? CsvWriter::Mode::append : CsvWriter::Mode::fresh) {
+      tables_(simulation_, folder_, table_mode(options)),
+      profiles_(simulation_, folder_, table_mode(options)) {
   summary_.case_file = options.case_file;
   summary_.threads = threads();
   summary_.stage_wall_seconds.resize(scene.stages.size());
-  if (options_.restart)
+  if (options_.restart) {
     restore();
-  else
+  } else {
     write_file_atomically(folder_.case_file(), resolved_);
+    copy_references();
+  }
   if (!frames_) frames_ = std::make_unique<Frames>(simulation_, folder_, std::nullopt);
   summary_.first_step = simulation_.steps();
   until_ = options.until.value_or(std::numeric_limits<double>::infinity());
   next_checkpoint_ = scene.output.checkpoint_every;
+}
+
+// A folder is complete by itself: its case runs again, its pictures show what was expected.
+void Run::copy_references() const {
+  const std::filesystem::path from = std::filesystem::path(options_.case_file).parent_path();
+  for (const coupling::Expectation& e : simulation_.scene().expectations) {
+    if (e.reference.empty()) continue;
+    std::error_code failure;
+    const std::filesystem::path to = folder_.path() / reference_name(simulation_.scene(), e.reference);
+    std::filesystem::copy_file(from / e.reference, to, std::filesystem::copy_options::overwrite_existing,
+                               failure);
+    if (failure) throw EnvironmentError(to.string() + ": cannot be written: " + failure.message());
+  }
 }
 
 void Run::restore() {
@@ -116,17 +166,21 @@ void Run::restore() {
   simulation_.visit(visitor);
   frames_ = std::make_unique<Frames>(simulation_, folder_, simulation_.time());
   tables_.visit(visitor);
+  profiles_.visit(visitor);
   frames_->visit(visitor);
   tables_.drop_after(simulation_.time());
+  profiles_.drop_after(simulation_.time());
 }
 
 void Run::write_checkpoint() {
   // What the checkpoint counts as written must be on the disk before it.
   tables_.sync();
+  profiles_.sync();
   CheckpointWriter writer(folder_.checkpoint(), program_version(), resolved_);
   CheckpointVisitor visitor(writer);
   simulation_.visit(visitor);
   tables_.visit(visitor);
+  profiles_.visit(visitor);
   frames_->visit(visitor);
   writer.commit();
   next_checkpoint_ = clock_.seconds() + simulation_.scene().output.checkpoint_every;
@@ -164,6 +218,7 @@ void Run::step() {
   simulation_.step();
   const double computed = clock_.seconds();
   tables_.see(simulation_);
+  profiles_.see(simulation_);
   frames_->see(simulation_);
   if (computed >= next_checkpoint_) write_checkpoint();
   const double after = clock_.seconds();
@@ -197,6 +252,7 @@ void Run::summarise(const std::string& status, const std::string& message) {
 
 void Run::finish(RunOutcome& outcome) {
   tables_.finish(simulation_);
+  profiles_.finish(simulation_);
   frames_->finish(simulation_);
   write_checkpoint();
   if (simulation_.finished())
@@ -204,10 +260,7 @@ void Run::finish(RunOutcome& outcome) {
         simulation_, folder_, std::filesystem::path(options_.case_file).parent_path());
   summarise("completed", "");
   for (const ExpectationResult& e : summary_.expectations)
-    log_.line(std::string("expectation  ") + e.measure + " (" + e.norm + "): " +
-              (e.problem.empty() ? "error " + digits(e.error, 3) + ", tolerance " + format_number(e.tolerance)
-                                 : e.problem) +
-              (e.pass ? ": passed" : ": MISSED"));
+    log_.line("expectation  " + describe(e) + (e.pass ? ": passed" : ": MISSED"));
   outcome.expectations = summary_.expectations;
   const coupling::Timing t = simulation_.timing();
   const double speed = t.total > 0 ? static_cast<double>(simulation_.steps() - summary_.first_step) *
@@ -225,6 +278,7 @@ RunOutcome Run::go() {
   try {
     if (!options_.restart) {
       tables_.see(simulation_);
+      profiles_.see(simulation_);
       frames_->see(simulation_);
     }
     while (!is_over() && !InterruptGuard::requested()) step();
@@ -243,6 +297,7 @@ RunOutcome Run::go() {
                    ? "the last checkpoint is " + folder_.checkpoint().string()
                    : "no checkpoint had been written yet");
     tables_.sync();
+    profiles_.sync();
     summarise("failed", e.what());
     outcome.code = ExitCode::numerical_failure;
   }

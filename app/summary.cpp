@@ -144,6 +144,9 @@ void write_summary(const Simulation& s, const RunFolder& folder, const RunSummar
     Json item = Json::object();
     item["measure"] = e.measure;
     item["norm"] = e.norm;
+    if (!e.when.empty()) item["when"] = e.when;
+    item["measured"] = e.measured;
+    item["expected"] = e.expected;
     item["error"] = e.error;
     item["tolerance"] = e.tolerance;
     item["pass"] = e.pass;

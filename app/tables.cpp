@@ -61,7 +61,8 @@ double history_interval(const Simulation& s) {
 double probe_interval(const Simulation& s) {
   double interval = history_interval(s);
   for (const Measure& m : s.scene().measures)
-    if (m.every > 0 && m.kind != Measure::Kind::history) interval = std::min(interval, m.every);
+    if (m.every > 0 && m.kind != Measure::Kind::history && !m.is_profile())
+      interval = std::min(interval, m.every);
   return interval;
 }
 
@@ -91,18 +92,8 @@ Tables::Tables(const Simulation& s, const RunFolder& folder, CsvWriter::Mode mod
       phreatic_tick_(history_interval(s)) {
   const Scene& scene = s.scene();
   const std::vector<std::string> columns = history_columns(s);
-  std::vector<std::string> known;
-  for (const std::string& c : columns) known.push_back(c.substr(0, c.find('[')));
-  std::vector<Diagnostic> wrong;
-  for (std::size_t i = 0; i < scene.measures.size(); ++i) {
-    const Measure& m = scene.measures[i];
-    if (m.kind == Measure::Kind::history && find_column(columns, m.quantity).empty())
-      wrong.push_back({"", 0, 0, "measure." + m.name + ".quantity",
-                       "the history has no column \"" + m.quantity + "\"" + did_you_mean(m.quantity, known),
-                       join(known)});
+  for (const Measure& m : scene.measures)
     probe_numbers_.push_back(m.kind == Measure::Kind::particle ? s.probe_particle(m.at) : -1);
-  }
-  if (!wrong.empty()) throw InputError(std::move(wrong));
   history_.emplace(folder.history(), columns, mode);
   add_probe_columns(s);
   if (!probe_columns_.empty()) {
@@ -124,6 +115,9 @@ void Tables::add_probe_columns(const Simulation& s) {
     };
     if (m.kind == Measure::Kind::cell)
       for (const coupling::Quantity& q : coupling::cell_quantities()) add(q.name, q.unit, q.name);
+    if (m.kind == Measure::Kind::body)
+      for (const coupling::Quantity& q : coupling::particle_quantities())
+        if (q.name == m.quantity) add(q.name, q.unit, q.name);
     if (m.kind != Measure::Kind::particle) continue;
     bool standard = false;
     for (const Standard& c : kStandard) {
@@ -137,8 +131,9 @@ void Tables::add_probe_columns(const Simulation& s) {
 }
 
 void Tables::see(const Simulation& s) {
-  if (history_tick_.due(s.time())) write_history(s);
-  if (probe_tick_.due(s.time())) write_probes(s);
+  // A row where an expectation looks, besides those that are due.
+  if (history_tick_.due(s.time()) || s.at_mark()) write_history(s);
+  if (probe_tick_.due(s.time()) || s.at_mark()) write_probes(s);
   if (phreatic_tick_.due(s.time())) write_phreatic(s);
 }
 
@@ -170,8 +165,9 @@ void Tables::write_probes(const Simulation& s) {
   for (const ProbeColumn& c : probe_columns_) {
     const auto i = static_cast<std::size_t>(c.measure);
     const Measure& m = s.scene().measures[i];
-    row.push_back(m.kind == Measure::Kind::cell ? s.cell_quantity(m.at, c.quantity)
-                                                : s.particle_quantity(probe_numbers_[i], c.quantity));
+    row.push_back(m.kind == Measure::Kind::cell   ? s.cell_quantity(m.at, c.quantity)
+                  : m.kind == Measure::Kind::body ? s.body_quantity(m.body, c.quantity)
+                                                  : s.particle_quantity(probe_numbers_[i], c.quantity));
   }
   probes_->row(row);
   last_probes_ = s.time();

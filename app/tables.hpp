@@ -18,7 +18,6 @@ class CheckpointVisitor;
 
 class Tables {
  public:
-  // InputError if a measure names a column that the history does not have.
   Tables(const coupling::Simulation& simulation, const RunFolder& folder, CsvWriter::Mode mode);
 
   // After every step, and once before the first: writes what is due.

@@ -1,5 +1,6 @@
 // `polder verify`: runs cases and compares them with their expectations.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <ostream>
 
@@ -26,14 +27,15 @@ struct Verdict {
   }
 };
 
-// cases/NAME/NAME.toml of the present folder that expect something.
-std::vector<std::string> cases_with_expectations() {
+// cases/NAME/NAME.toml of the present folder that expect something and take no more than this effort.
+std::vector<std::string> cases_with_expectations(coupling::Effort most) {
   std::vector<std::string> list;
   std::error_code failure;
   for (const fs::directory_entry& entry : fs::directory_iterator("cases", failure)) {
     const fs::path file = entry.path() / (entry.path().filename().string() + ".toml");
-    if (fs::exists(file, failure) && !read_case(file.string()).expectations.empty())
-      list.push_back(file.string());
+    if (!fs::exists(file, failure)) continue;
+    const coupling::Scene scene = read_case(file.string());
+    if (!scene.expectations.empty() && scene.effort <= most) list.push_back(file.string());
   }
   if (list.empty())
     throw InputError(
@@ -47,17 +49,44 @@ std::string padded(std::string text, std::size_t width) {
   return text + "  ";
 }
 
-void print_table(const std::vector<Verdict>& verdicts, std::ostream& out) {
-  out << padded("case", 24) << padded("measure", 20) << padded("norm", 8) << padded("error", 10)
-      << padded("tolerance", 10) << padded("", 6) << "wall\n";
-  for (const Verdict& v : verdicts) {
-    if (!v.failure.empty()) out << padded(v.name, 24) << "FAILED: " << v.failure << '\n';
-    for (const ExpectationResult& e : v.outcome.expectations)
-      out << padded(v.name, 24) << padded(e.measure, 20) << padded(e.norm, 8)
-          << padded(digits(e.error, 3), 10) << padded(digits(e.tolerance, 3), 10)
-          << padded(e.pass ? "pass" : "MISS", 6) << duration_text(v.outcome.wall_seconds)
-          << (e.problem.empty() ? "" : "  " + e.problem) << '\n';
+// Columns as wide as their widest cell.
+void print_aligned(const std::vector<std::vector<std::string>>& rows, std::ostream& out) {
+  std::vector<std::size_t> width;
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (i == width.size()) width.push_back(0);
+      width[i] = std::max(width[i], row[i].size());
+    }
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) line += padded(row[i], width[i]);
+    line.erase(line.find_last_not_of(' ') + 1);
+    out << line << '\n';
   }
+}
+
+void print_table(const std::vector<Verdict>& verdicts, std::ostream& out) {
+  std::vector<std::vector<std::string>> rows{
+      {"case", "measure", "norm", "", "measured", "expected", "error", "tolerance", "", "wall"}};
+  const auto number = [](double x, int n) { return std::isnan(x) ? std::string("-") : digits(x, n); };
+  double wall = 0;
+  int missed = 0, all = 0;
+  for (const Verdict& v : verdicts) {
+    wall += v.outcome.wall_seconds;
+    std::string name = v.name, seconds = duration_text(v.outcome.wall_seconds);
+    for (const ExpectationResult& e : v.outcome.expectations) {
+      rows.push_back({name, e.measure, e.norm, e.when, number(e.measured, 5), e.expected, number(e.error, 3),
+                      e.tolerance > 0 ? digits(e.tolerance, 3) : "-", e.pass ? "pass" : "MISS", seconds,
+                      e.problem});
+      ++all, missed += e.pass ? 0 : 1;
+      name.clear(), seconds.clear();  // once for each case
+    }
+  }
+  print_aligned(rows, out);
+  for (const Verdict& v : verdicts)
+    if (!v.failure.empty()) out << v.name << "  FAILED: " << v.failure << '\n';
+  out << all - missed << " of " << all << " expectations of " << verdicts.size()
+      << (verdicts.size() == 1 ? " case" : " cases") << " met in " << duration_text(wall) << '\n';
 }
 
 std::string xml(const std::string& text) {
@@ -97,7 +126,7 @@ std::string junit(const std::vector<Verdict>& verdicts) {
       body += "><error message=\"" + xml(v.failure) + "\"/></testcase>\n";
     }
     for (const ExpectationResult& e : v.outcome.expectations) {
-      open(e.measure + " " + e.norm);
+      open(e.measure + " " + e.norm + (e.when.empty() ? "" : " " + e.when));
       if (e.pass) {
         body += "/>\n";
         continue;
@@ -115,7 +144,17 @@ std::string junit(const std::vector<Verdict>& verdicts) {
 }  // namespace
 
 int verify_command(const Arguments& a, std::ostream& out, std::ostream& err) {
-  const std::vector<std::string> files = a.words.empty() ? cases_with_expectations() : a.words;
+  if (a.has("--all") && a.has("--quick"))
+    throw InputError("polder verify: --all and --quick contradict each other; allowed: one of them");
+  if (!a.words.empty() && (a.has("--all") || a.has("--quick")))
+    throw InputError(
+        "polder verify: --all and --quick choose among the cases in the folder cases; allowed: "
+        "without CASE");
+  const std::vector<std::string> files =
+      !a.words.empty() ? a.words
+                       : cases_with_expectations(a.has("--all")     ? coupling::Effort::extensive
+                                                 : a.has("--quick") ? coupling::Effort::quick
+                                                                    : coupling::Effort::normal);
   // All are read before the first one runs: a mistake in the last should not show after hours.
   std::vector<Diagnostic> wrong;
   for (const std::string& file : files) {

@@ -151,16 +151,72 @@ double Simulation::Run<D>::quantity_of(const ParticleSet<D>& set, int p, const s
 }
 
 template <int D>
-double Simulation::Run<D>::particle_quantity(int number, const std::string& quantity) const {
-  const auto [set, p] = locate(number);
-  if (quantity == "vertical_stress") return quantity_of(*set, p, "effective_stress", D == 2 ? 1 : 2);
+double Simulation::Run<D>::particle_value(const ParticleSet<D>& set, int p,
+                                          const std::string& quantity) const {
+  if (quantity == "vertical_stress") return quantity_of(set, p, "effective_stress", D == 2 ? 1 : 2);
   if (quantity.rfind("stress_", 0) == 0) {
     static const char* const names[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
     for (int k = 0; k < 6; ++k)
-      if (quantity == std::string("stress_") + names[k]) return quantity_of(*set, p, "effective_stress", k);
+      if (quantity == std::string("stress_") + names[k]) return quantity_of(set, p, "effective_stress", k);
   }
   const int axis = axis_of(quantity);
-  return quantity_of(*set, p, axis >= 0 ? quantity.substr(0, quantity.size() - 2) : quantity, axis);
+  return quantity_of(set, p, axis >= 0 ? quantity.substr(0, quantity.size() - 2) : quantity, axis);
+}
+
+template <int D>
+double Simulation::Run<D>::particle_quantity(int number, const std::string& quantity) const {
+  const auto [set, p] = locate(number);
+  return particle_value(*set, p, quantity);
+}
+
+template <int D>
+double Simulation::Run<D>::body_quantity(const std::string& name, const std::string& quantity) const {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (scene.bodies[b].name != name) continue;
+    const ParticleSet<D>& set = *world->skeleton.bodies()[b];
+    double sum = 0, mass = 0;
+    for (int id = 0; id < set.count(); ++id) {  // by number: the sum must not depend on the order in cells
+      const int p = set.find(id);
+      sum += set.mass[p] * particle_value(set, p, quantity), mass += set.mass[p];
+    }
+    return sum / mass;
+  }
+  throw InputError("there is no body \"" + name + "\"");
+}
+
+template <int D>
+Profile Simulation::Run<D>::profile(const Measure& m) const {
+  Profile result;
+  const bool initial = m.along.starts_with("initial_");
+  const int axis = m.along.back() - 'x';
+  const auto add = [&](const Point<D>& at, auto&& value) {
+    for (int d = 0; m.within && d < D; ++d)
+      if (at[d] < (*m.within)[0][d] || at[d] > (*m.within)[1][d]) return;
+    result.coordinate.push_back(at[axis]);
+    result.value.push_back(value());
+  };
+  if (m.kind == Measure::Kind::cells) {
+    if (!world->pore_water) return result;
+    const PoreWater<D>& water = *world->pore_water;
+    for (const auto& cell : water.cells.cells()) {
+      const Point<D> centre = water.cells.centre(cell.index);
+      add(centre, [&] {
+        const double p = water.pressure.pressure()[cell.slot];
+        return m.quantity == "head" ? p / world->unit_weight() + centre[D - 1] : p;
+      });
+    }
+    return result;
+  }
+  for (const auto& body : world->skeleton.bodies()) {
+    const auto& position = initial ? body->initial_position : body->position;
+    for (int id = 0; id < body->count(); ++id) {
+      const int p = body->find(id);
+      Point<D> at;
+      for (int d = 0; d < D; ++d) at[d] = position[d][p];
+      add(at, [&] { return particle_value(*body, p, m.quantity); });
+    }
+  }
+  return result;
 }
 
 template <int D>
@@ -275,14 +331,16 @@ CellFrame Simulation::Run<D>::water_cells() const {
   return f;
 }
 
-#define POLDER_INSTANTIATE(D)                                                                  \
-  template long Simulation::Run<D>::particles() const;                                         \
-  template std::vector<Column> Simulation::Run<D>::history() const;                            \
-  template int Simulation::Run<D>::probe_particle(const Vector3&) const;                       \
-  template double Simulation::Run<D>::particle_quantity(int, const std::string&) const;        \
-  template double Simulation::Run<D>::cell_quantity(const Vector3&, const std::string&) const; \
-  template std::vector<std::pair<double, double>> Simulation::Run<D>::phreatic_line() const;   \
-  template PointFrame Simulation::Run<D>::points(const std::vector<std::string>&) const;       \
+#define POLDER_INSTANTIATE(D)                                                                      \
+  template long Simulation::Run<D>::particles() const;                                             \
+  template std::vector<Column> Simulation::Run<D>::history() const;                                \
+  template int Simulation::Run<D>::probe_particle(const Vector3&) const;                           \
+  template double Simulation::Run<D>::particle_quantity(int, const std::string&) const;            \
+  template double Simulation::Run<D>::cell_quantity(const Vector3&, const std::string&) const;     \
+  template double Simulation::Run<D>::body_quantity(const std::string&, const std::string&) const; \
+  template Profile Simulation::Run<D>::profile(const Measure&) const;                              \
+  template std::vector<std::pair<double, double>> Simulation::Run<D>::phreatic_line() const;       \
+  template PointFrame Simulation::Run<D>::points(const std::vector<std::string>&) const;           \
   template CellFrame Simulation::Run<D>::water_cells() const;
 POLDER_INSTANTIATE(2)
 POLDER_INSTANTIATE(3)

@@ -44,4 +44,40 @@ const std::vector<Quantity>& frame_quantities() {
   return list;
 }
 
+std::vector<Quantity> history_quantities(const Scene& scene) {
+  const auto component = [](int d) { return std::string(1, "xyz"[d]); };
+  std::vector<Quantity> list{{"time", "s"},
+                             {"step", ""},
+                             {"stage", ""},
+                             {"dt", "s"},
+                             {"kinetic_energy", "J"},
+                             {"elastic_energy", "J"},
+                             {"work_gravity", "J"},
+                             {"work_stress", "J"},
+                             {"work_water", "J"},
+                             {"work_damping", "J"},
+                             {"work_boundary", "J"},
+                             {"transfer_loss", "J"},
+                             {"unbalanced_force_ratio", "-"}};
+  const int dimension = scene.dimension();
+  for (int d = 0; d < dimension; ++d) list.push_back({"momentum_" + component(d), "kg m/s"});
+  for (const char* name : {"momentum_error", "solid_mass_error"}) list.push_back({name, "-"});
+  list.push_back({"max_speed", "m/s"});
+  for (const char* name : {"runout", "height"}) list.push_back({name, "m"});
+  for (const Boundary& b : scene.boundaries)
+    if (b.kind != Boundary::Kind::traction && b.kind != Boundary::Kind::pressure)
+      for (int d = 0; d < dimension; ++d) list.push_back({"reaction:" + b.name + "_" + component(d), "N"});
+  const Formulation* formulation = find_formulation(scene.formulation);
+  if (formulation != nullptr && formulation->carrier == WaterCarrier::cells) {
+    list.insert(list.end(), {{"water_mass_error", "-"},
+                             {"water_outflow", "m3"},
+                             {"max_pore_pressure", "Pa"},
+                             {"pressure_roughness", "Pa"},
+                             {"discharge:surface", "m3/s"}});
+    for (const WaterBoundary& w : scene.water_boundaries) list.push_back({"discharge:" + w.name, "m3/s"});
+    list.push_back({"pressure_cells", ""});
+  }
+  return list;
+}
+
 }  // namespace polder::coupling

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "coupling/scene.hpp"
+
 namespace polder::coupling {
 
 struct Quantity {
@@ -19,5 +21,7 @@ struct Quantity {
 const std::vector<Quantity>& particle_quantities();  // scalars of one particle, for [[measure]]
 const std::vector<Quantity>& cell_quantities();      // scalars of one cell, for [[measure]]
 const std::vector<Quantity>& frame_quantities();     // fields of the soil's frames
+// Columns of a scene's history, in their order: what Simulation::history() will give.
+std::vector<Quantity> history_quantities(const Scene& scene);
 
 }  // namespace polder::coupling

@@ -185,23 +185,32 @@ struct Stage {
 
 struct Measure {
   std::string name;
-  enum class Kind { particle, cell, history } kind = Kind::particle;
-  // particle: the material point nearest to `at` in the initial state is followed; cell: pore pressure at
-  // `at`; history: the column `quantity` of the history.
+  // particle: the material point nearest to `at` in the initial state is followed; cell: the water in the
+  // cell at `at`; history: the column `quantity` of the history; body: the mean over a body's mass.
+  // Profiles, many values at a time: particles: of all points; cells: of all cells with water.
+  enum class Kind { particle, cell, history, body, particles, cells } kind = Kind::particle;
   std::string quantity;
   Vector3 at{};
-  double every = 0;  // [s], 0 = every history line
+  std::string body;   // body: which
+  std::string along;  // profiles: the coordinate, x, y or z at present, initial_x ... at the start
+  std::optional<std::array<Vector3, 2>> within;  // profiles: only inside this box, of the same coordinates
+  double every = 0;                              // [s], 0 = every history line; profiles: only where expected
+  bool is_profile() const { return kind == Kind::particles || kind == Kind::cells; }
   bool operator==(const Measure&) const = default;
 };
 
+// Exactly one of a reference, a value, or one or two bounds.
 struct Expectation {
   std::string measure;
-  std::string reference;        // CSV file, path relative to the case file; empty: `value`
+  std::string reference;        // CSV file, path relative to the case file
   std::string column;           // of the reference; default: its second
-  std::optional<double> value;  // compared with the last value (norm "last"), or "max", "min"
-  std::string norm = "l2";      // l2 | max | last | largest | smallest
-  std::string from_stage;       // times of the reference count from the start of this stage; empty: from 0
-  double tolerance = 0;         // relative where the reference is not 0, absolute otherwise
+  std::optional<double> value;  // of the norms that give one number
+  std::optional<double> at_least, at_most;
+  std::string norm = "l2";     // l2 | max | last | largest | smallest | magnitude | mean
+  std::string from_stage;      // times count from the start of this stage; empty: from 0
+  std::optional<double> time;  // up to which the measure counts [s]; a step ends there
+  double tolerance = 0;        // relative where the reference is not 0, absolute otherwise
+  bool has_bounds() const { return at_least || at_most; }
   bool operator==(const Expectation&) const = default;
 };
 
@@ -215,8 +224,12 @@ struct OutputSpec {
   bool operator==(const OutputSpec&) const = default;
 };
 
+// How long a case takes, for those who run many.
+enum class Effort { quick, normal, extensive };  // seconds; up to a minute; more
+
 struct Scene {
   std::string title;
+  Effort effort = Effort::normal;
   std::string formulation = "dry";
   Vector3 gravity{0, -9.81, 0};
   GridSpec grid;

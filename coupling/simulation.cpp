@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "core/error.hpp"
 #include "coupling/initial_state.hpp"
@@ -56,6 +57,23 @@ void Simulation::Run<D>::begin_stage() {
   laws_set = true;
 }
 
+// The first time after now and well before the end of the stage at which an expectation looks.
+template <int D>
+double Simulation::Run<D>::next_mark(double stage_end) const {
+  const double slack = 1e-9 * present().duration;
+  double next = std::numeric_limits<double>::infinity();
+  for (const Expectation& e : scene.expectations) {
+    if (!e.time) continue;
+    double start = 0;
+    int first = 0;
+    if (!e.from_stage.empty())
+      for (; scene.stages[first].name != e.from_stage; ++first) start += reports[first].time;
+    const double at = start + *e.time;
+    if (first <= stage && at > time + slack && at < stage_end - slack) next = std::min(next, at);
+  }
+  return next;
+}
+
 template <int D>
 void Simulation::Run<D>::step() {
   Stopwatch watch(timing.total);
@@ -70,9 +88,10 @@ void Simulation::Run<D>::step() {
   reason = "skeleton wave";
   if (scene.numerics.time_step) step_size = *scene.numerics.time_step, reason = "fixed by the case";
   if (speed * step_size > kSpeedShare * h) step_size = kSpeedShare * h / speed, reason = "particle speed";
-  const double left = stage_start + stage_spec.duration - time;
-  const bool last = step_size >= left * (1 - 1e-9);
-  if (last) step_size = left, reason = "end of stage";
+  const double stage_end = stage_start + stage_spec.duration, mark = next_mark(stage_end);
+  const double left = std::min(stage_end, mark) - time;
+  const bool lands = step_size >= left * (1 - 1e-9), last = lands && stage_end <= mark;
+  if (lands) step_size = left, reason = last ? "end of stage" : "time of an expectation";
 
   StepInput in;
   in.time = time;
@@ -95,11 +114,12 @@ void Simulation::Run<D>::step() {
     Stopwatch watch_audit(timing.audit);
     audit->add_step(*world, dt, in.damping, in.gravity);
   }
-  if (!last) {
+  if (!lands) {
     smallest = smallest == 0 ? dt : std::min(smallest, dt);
     largest = std::max(largest, dt);
   }
-  time = last ? stage_start + stage_spec.duration : time + dt;
+  time = lands ? std::min(stage_end, mark) : time + dt;
+  marked = lands;
   ++steps, ++stage_steps;
   reports[stage].steps = stage_steps;
   reports[stage].time = time - stage_start;
@@ -133,6 +153,7 @@ bool Simulation::Run<D>::at_rest() {
 template <int D>
 void Simulation::Run<D>::end_stage(const std::string& by) {
   reports[stage].ended_by = by;
+  marked = true;
   const Stage& ended = present();
   for (auto& body : world->skeleton.bodies()) {
     ParticleSet<D>& set = *body;
@@ -270,6 +291,9 @@ int Simulation::stage() const {
 const std::vector<StageReport>& Simulation::stages() const {
   return run_->reports;
 }
+bool Simulation::at_mark() const {
+  return run_->marked;
+}
 double Simulation::last_step() const {
   return run_->dt;
 }
@@ -324,6 +348,12 @@ double Simulation::particle_quantity(int n, const std::string& q) const {
 }
 double Simulation::cell_quantity(const Vector3& at, const std::string& q) const {
   return run_->cell_quantity(at, q);
+}
+double Simulation::body_quantity(const std::string& body, const std::string& q) const {
+  return run_->body_quantity(body, q);
+}
+Profile Simulation::profile(const Measure& m) const {
+  return run_->profile(m);
 }
 std::vector<std::pair<double, double>> Simulation::phreatic_line() const {
   return run_->phreatic_line();

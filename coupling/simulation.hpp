@@ -51,6 +51,11 @@ struct CellFrame {
   std::vector<FieldView> fields;  // over cells
 };
 
+// Values of a profile measure and the coordinates they belong to, in the order of the points or cells.
+struct Profile {
+  std::vector<double> coordinate, value;
+};
+
 // Reads or writes every number that decides what comes next. Implemented by checkpoints.
 class StateVisitor {
  public:
@@ -93,6 +98,8 @@ class Simulation {
   long steps() const;
   int stage() const;  // index, number of stages when finished
   const std::vector<StageReport>& stages() const;
+  // The last step ended a stage or at the time of an expectation: what is looked at then must be recorded.
+  bool at_mark() const;
   double last_step() const;                // dt [s]
   const std::string& step_reason() const;  // what limited it
   double smallest_step() const;
@@ -113,7 +120,9 @@ class Simulation {
   // A named particle quantity of the point nearest to a place in the initial state (quantities.hpp).
   int probe_particle(const Vector3& at) const;  // number over all bodies
   double particle_quantity(int number, const std::string& quantity) const;
-  double cell_quantity(const Vector3& at, const std::string& quantity) const;  // NaN where no water is
+  double cell_quantity(const Vector3& at, const std::string& quantity) const;        // NaN where no water is
+  double body_quantity(const std::string& body, const std::string& quantity) const;  // mean over its mass
+  Profile profile(const Measure& measure) const;
   std::vector<std::pair<double, double>> phreatic_line() const;  // (x, height) of the water surface, 2D
 
   PointFrame points(const std::vector<std::string>& fields) const;

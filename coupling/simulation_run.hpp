@@ -21,6 +21,8 @@ struct Simulation::Base {
   virtual int probe_particle(const Vector3& at) const = 0;
   virtual double particle_quantity(int number, const std::string& quantity) const = 0;
   virtual double cell_quantity(const Vector3& at, const std::string& quantity) const = 0;
+  virtual double body_quantity(const std::string& body, const std::string& quantity) const = 0;
+  virtual Profile profile(const Measure& measure) const = 0;
   virtual std::vector<std::pair<double, double>> phreatic_line() const = 0;
   virtual PointFrame points(const std::vector<std::string>& fields) const = 0;
   virtual CellFrame water_cells() const = 0;
@@ -35,6 +37,7 @@ struct Simulation::Base {
   double wave_speed = 0, speed = 0;  // [m/s], of the state the step is chosen from
   double force_ratio = 0, energy_ratio = 0;
   bool laws_set = false;  // the present stage has begun
+  bool marked = false;    // the last step ended a stage or where an expectation looks
   std::vector<StageReport> reports;
   std::string reason;
   std::optional<StepLimit> limit;  // found when first asked for
@@ -63,6 +66,8 @@ struct Simulation::Run final : Simulation::Base {
   int probe_particle(const Vector3& at) const override;
   double particle_quantity(int number, const std::string& quantity) const override;
   double cell_quantity(const Vector3& at, const std::string& quantity) const override;
+  double body_quantity(const std::string& body, const std::string& quantity) const override;
+  Profile profile(const Measure& measure) const override;
   std::vector<std::pair<double, double>> phreatic_line() const override;
   PointFrame points(const std::vector<std::string>& fields) const override;
   CellFrame water_cells() const override;
@@ -70,10 +75,12 @@ struct Simulation::Run final : Simulation::Base {
 
  private:
   void begin_stage();
+  double next_mark(double stage_end) const;
   void end_stage(const std::string& by);
   bool at_rest();  // equilibrium stages: both ratios below their tolerances
   // Body and slot of a point by its number over all bodies.
   std::pair<const ParticleSet<D>*, int> locate(int number) const;
+  double particle_value(const ParticleSet<D>& set, int p, const std::string& quantity) const;
   double quantity_of(const ParticleSet<D>& set, int p, const std::string& quantity, int component) const;
 };
 

@@ -18,7 +18,7 @@
 #include <thread>
 #include <vector>
 
-#include "app/expectations.hpp"
+#include "app/measured.hpp"
 #include "app/program.hpp"
 #include "app/ticker.hpp"
 #include "core/error.hpp"
