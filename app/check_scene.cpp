@@ -175,9 +175,10 @@ void check_measures(Reader& reader) {
     if (measure == scene.measures.end())
       reader.error(key, "the case has no measure \"" + e.measure + "\"" + did_you_mean(e.measure, names),
                    names.empty() ? "[[measure]]" : join(names));
-    else if (measure->is_profile() && e.norm == "last" && !reader.failed(item_key("expect", i)))
+    else if (measure->is_profile() && (e.norm == "last" || e.norm == "change") &&
+             !reader.failed(item_key("expect", i)))
       reader.error(item_key("expect", i) + (reader.given(item_key("expect", i) + ".norm") ? ".norm" : ""),
-                   "a profile has many values, none is the last",
+                   "a profile has many values, none is the first or last",
                    "norm = \"l2\", \"max\" with a reference; "
                    "\"largest\", \"smallest\", \"magnitude\", \"mean\"");
     std::vector<std::string> stages;

@@ -105,7 +105,7 @@ void check_expectation(Expectation& e, const std::string& path, Reader& reader) 
     reader.error(
         key_path(path, "norm"),
         "\"" + e.norm + "\" compares curves, " + (e.value ? "value is" : "bounds are for") + " one number",
-        "last, largest, smallest, magnitude, mean");
+        "last, largest, smallest, magnitude, mean, change");
   if (!e.column.empty()) reader.error(key_path(path, "column"), "does not apply here", "only with reference");
 }
 
@@ -170,10 +170,12 @@ const Table<Expectation>& expect_keys() {
           "Expected number, in SI units, instead of a reference.");
     t.add("at_least", number(dimension::kNone), &E::at_least, "Lower bound instead, in SI units.");
     t.add("at_most", number(dimension::kNone), &E::at_most, "Upper bound instead, in SI units.");
-    t.add("norm", word({"l2", "max", "last", "largest", "smallest", "magnitude", "mean"}), &E::norm,
-          "l2, max: norm of the difference of two curves, of a profile over its points; one number of the "
-          "measure: its last, largest or smallest, the largest magnitude, the mean (over time, of a profile "
-          "over its points). With value or bounds the default is last.");
+    t.add(
+        "norm", word({"l2", "max", "last", "largest", "smallest", "magnitude", "mean", "change"}), &E::norm,
+        "l2, max: norm of the difference of two curves, of a profile over its points; one number of the "
+        "measure: its last, largest or smallest, the largest magnitude, the mean (over time, of a profile "
+        "over its points), the change from its first to its last value. With value or bounds the default is "
+        "last.");
     t.add("from_stage", text(), &E::from_stage,
           "Stage at whose start times begin, and before which nothing is compared; default: the beginning of "
           "the run.");

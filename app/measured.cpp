@@ -78,7 +78,7 @@ Curve cut(const Curve& c, double end) {
 double number_of(const std::string& norm, const Curve& c, bool profile) {
   if (c.value.empty()) return kNone;
   for (const double v : c.value)
-    if (std::isnan(v) && norm != "last") return kNone;  // comparisons would lose it
+    if (std::isnan(v) && norm != "last" && norm != "change") return kNone;  // comparisons would lose it
   if (norm == "largest") return *std::max_element(c.value.begin(), c.value.end());
   if (norm == "smallest") return *std::min_element(c.value.begin(), c.value.end());
   if (norm == "magnitude") {
@@ -96,7 +96,7 @@ double number_of(const std::string& norm, const Curve& c, bool profile) {
       sum += 0.5 * (c.value[i - 1] + c.value[i]) * (c.x[i] - c.x[i - 1]);
     return sum / (c.x.back() - c.x.front());
   }
-  return c.value.back();
+  return norm == "change" ? c.value.back() - c.value.front() : c.value.back();
 }
 
 double curve_error(const std::string& norm, const std::vector<double>& time, const std::vector<double>& value,

@@ -25,8 +25,8 @@ Curve read_reference(const CsvTable& table, const std::string& column, bool prof
 // The curve up to `end`, with the value between two points there.
 Curve cut(const Curve& curve, double end);
 
-// largest, smallest, magnitude, mean (over time by the trapezoidal rule, of a profile over its points), else
-// the last.
+// largest, smallest, magnitude, mean (over time by the trapezoidal rule, of a profile over its points),
+// change (last minus first), else the last.
 double number_of(const std::string& norm, const Curve& curve, bool profile);
 
 // Error of a curve against a reference at the reference's times, the curve linear between its points.

@@ -27,19 +27,22 @@ struct Verdict {
   }
 };
 
-// cases/NAME/NAME.toml of the present folder that expect something and take no more than this effort.
+// cases/NAME/*.toml of the present folder that expect something and take no more than this effort.
 std::vector<std::string> cases_with_expectations(coupling::Effort most) {
   std::vector<std::string> list;
   std::error_code failure;
-  for (const fs::directory_entry& entry : fs::directory_iterator("cases", failure)) {
-    const fs::path file = entry.path() / (entry.path().filename().string() + ".toml");
-    if (!fs::exists(file, failure)) continue;
-    const coupling::Scene scene = read_case(file.string());
-    if (!scene.expectations.empty() && scene.effort <= most) list.push_back(file.string());
+  for (const fs::directory_entry& folder : fs::directory_iterator("cases", failure)) {
+    if (!folder.is_directory(failure)) continue;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder.path())) {
+      if (entry.path().extension() != ".toml") continue;
+      const coupling::Scene scene = read_case(entry.path().string());
+      if (!scene.expectations.empty() && scene.effort <= most) list.push_back(entry.path().string());
+    }
   }
   if (list.empty())
     throw InputError(
-        "polder verify: no cases/NAME/NAME.toml with [[expect]] here; allowed: polder verify CASE...");
+        "polder verify: no case with [[expect]] in the folder cases here; allowed: polder verify CASE..., or "
+        "another folder");
   std::sort(list.begin(), list.end());
   return list;
 }

@@ -143,8 +143,13 @@ void add_body(const Scene& scene, const Body& body, World<D>& world) {
       set.velocity[1][p] += body.spin * (set.position[0][p] - centre[0]);
     }
   }
-  if (world.skeleton.options().affine != mpm::AffineKind::none)
+  if (world.skeleton.options().affine != mpm::AffineKind::none) {
     for (Reals& c : set.affine) c.assign(set.slots(), 0.0);
+    if (D == 2 && body.spin != 0) {  // the points' own share of the turning: the gradient of the velocity
+      set.affine[1].assign(set.slots(), -body.spin);
+      set.affine[2].assign(set.slots(), body.spin);
+    }
+  }
 }
 
 }  // namespace

@@ -62,6 +62,7 @@ TEST_CASE("numbers of a curve") {
   const Curve c{{0, 1, 3}, {1, -4, 2}};
   CHECK(number_of("last", c, false) == 2);
   CHECK(number_of("largest", c, false) == 2);
+  CHECK(number_of("change", c, false) == 1);
   CHECK(number_of("smallest", c, false) == -4);
   CHECK(number_of("magnitude", c, false) == 4);
   CHECK(number_of("mean", c, false) == doctest::Approx((-1.5 - 2.0) / 3));  // over time
