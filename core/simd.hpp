@@ -208,6 +208,16 @@ POLDER_INLINE void transpose(Pack (&r)[kLanes]) {
   for (int i = 0; i < kLanes; i += 2) detail::butterfly<1>(r[i], r[i + 1]);
 }
 
+#if defined(__AVX512F__)
+namespace detail {
+// Two 4 x 4 squares side by side: row i, lane j (and 4 + j) -> row j, lane i (and 4 + i).
+POLDER_INLINE void transpose_halves(Pack (&r)[4]) {
+  for (int i = 0; i < 2; ++i) butterfly<2>(r[i], r[i + 2]);
+  for (int i = 0; i < 4; i += 2) butterfly<1>(r[i], r[i + 1]);
+}
+}  // namespace detail
+#endif
+
 // Fields of kLanes particles (lane = particle) to one register for each particle (lane = component), N = 4
 // or 8.
 template <int N>
@@ -219,12 +229,15 @@ POLDER_INLINE void to_nodes(const Pack (&fields)[N], Reg<N> (&nodes)[kLanes]) {
       transpose(square);
       for (int i = 0; i < kLanes; ++i) nodes[i].r[part] = square[i];
     }
-  } else {  // kLanes = 8, N = 4: the lower half of a square
-    Pack square[kLanes] = {};
-    for (int i = 0; i < N; ++i) square[i] = fields[i];
-    transpose(square);
-    for (int i = 0; i < kLanes; ++i)
-      nodes[i].r[0] = *reinterpret_cast<const typename Reg<N>::Chunk*>(&square[i]);
+  } else {
+#if defined(__AVX512F__)
+    Pack half[4] = {fields[0], fields[1], fields[2], fields[3]};
+    detail::transpose_halves(half);
+    for (int i = 0; i < 4; ++i) {
+      nodes[i].r[0] = __builtin_shufflevector(half[i], half[i], 0, 1, 2, 3);
+      nodes[i + 4].r[0] = __builtin_shufflevector(half[i], half[i], 4, 5, 6, 7);
+    }
+#endif
   }
 }
 
@@ -239,10 +252,13 @@ POLDER_INLINE void to_packs(const Reg<N> (&nodes)[kLanes], Pack (&fields)[N]) {
       for (int i = 0; i < kLanes; ++i) fields[part * kLanes + i] = square[i];
     }
   } else {
-    Pack square[kLanes] = {};
-    for (int i = 0; i < kLanes; ++i) *reinterpret_cast<typename Reg<N>::Chunk*>(&square[i]) = nodes[i].r[0];
-    transpose(square);
-    for (int i = 0; i < N; ++i) fields[i] = square[i];
+#if defined(__AVX512F__)
+    Pack half[4];
+    for (int i = 0; i < 4; ++i)
+      half[i] = __builtin_shufflevector(nodes[i].r[0], nodes[i + 4].r[0], 0, 1, 2, 3, 4, 5, 6, 7);
+    detail::transpose_halves(half);
+    for (int i = 0; i < N; ++i) fields[i] = half[i];
+#endif
   }
 }
 

@@ -115,6 +115,7 @@ mpm::MoveResult step_one_layer(World<D>& world, const StepInput& in, long step) 
     p.porosity = w.porosity;
     p.darcy_mobility = w.darcy_mobility;
     p.rhie_chow = world.scene.numerics.rhie_chow;
+    p.pressure_gradient = w.node_gradient;
     {
       Stopwatch watch(w.wall_seconds);
       w.pressure.solve(p);

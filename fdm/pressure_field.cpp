@@ -163,15 +163,17 @@ double PressureField<D>::darcy_outflow(const BoundaryFace<D>& f, double darcy_mo
 
 template <int D>
 void PressureField<D>::face_terms(std::span<const double> mobility, std::span<const double> darcy_mobility,
-                                  double chi) {
+                                  double chi, std::span<const double> node_gradient) {
   const auto cells = cells_.cells();
   const auto interior = cells_.interior_faces();
   const auto boundary = cells_.boundary_faces();
   const int n_interior = static_cast<int>(interior.size());
   const double per_spacing = 1 / cells_.grid().spacing();
   const bool inertia = !mobility.empty();
-  if (inertia && chi > 0)
+  if (inertia && chi > 0 && node_gradient.empty()) {
     gradient_.evaluate(cells_, p_, BoundaryValues::present, WallNormal::none, node_grad_);
+    node_gradient = node_grad_;
+  }
 
   for_each(n_interior, [&](int i) {
     const InteriorFace<D>& f = interior[i];
@@ -185,7 +187,7 @@ void PressureField<D>::face_terms(std::span<const double> mobility, std::span<co
       conductance += lam * (1 + chi);
       if (chi > 0) {
         double mean = 0;
-        for (int node : f.nodes) mean += node_grad_[static_cast<std::size_t>(node) * kStride + f.axis];
+        for (int node : f.nodes) mean += node_gradient[static_cast<std::size_t>(node) * kStride + f.axis];
         flow += chi * lam * (gradient - mean / static_cast<double>(f.nodes.size()));
       }
     }
@@ -322,7 +324,7 @@ SolveReport PressureField<D>::solve(const PressureStep& step) {
   if (p_.size() != slots)
     throw std::logic_error("PressureField: the grid changed and carry() was not called");
 
-  face_terms(step.mobility, step.darcy_mobility, step.rhie_chow);
+  face_terms(step.mobility, step.darcy_mobility, step.rhie_chow, step.pressure_gradient);
   for_each(cells_.count(), [&](int c) {
     divergence_[c] = divergence(cells[c], step.velocity);
     storage_[c] = step.porosity[cells[c].slot] / water_.bulk_modulus * cells[c].volume / step.dt;
@@ -358,7 +360,7 @@ SolveReport PressureField<D>::steady(std::span<const double> darcy_mobility) {
   std::fill(divergence_.begin(), divergence_.end(), 0.0);
   SolveReport report;
   for (int pass = 0; pass < 2; ++pass) {  // the second solves for what rounding and tolerance left
-    face_terms({}, darcy_mobility, 0);
+    face_terms({}, darcy_mobility, 0, {});
     const SolveReport r = solve_increment();
     report.iterations += r.iterations;
     report.residual = r.residual;

@@ -47,6 +47,9 @@ struct PressureStep {
   std::span<const double> porosity;  // of the cells [-]
   std::span<const double> darcy_mobility;  // of the cells, k / gamma_w [m2 / (Pa s)]
   double rhie_chow = 0.05;                 // chi [-]
+  // node_gradient(pressure(), present) before the step if the caller has it, else empty. Treatment of walls
+  // does not matter: the faces inside need no normal gradient at one.
+  std::span<const double> pressure_gradient;
 };
 
 // Water leaving the soil through ... [m3/s]
@@ -120,7 +123,8 @@ class PressureField {
   double divergence(const ActiveCell<D>& cell, std::span<const double> velocity) const;
   double face_mobility(const FaceNodes<D>& nodes, std::span<const double> mobility) const;
   double darcy_outflow(const BoundaryFace<D>& face, double darcy_mobility) const;
-  void face_terms(std::span<const double> mobility, std::span<const double> darcy_mobility, double chi);
+  void face_terms(std::span<const double> mobility, std::span<const double> darcy_mobility, double chi,
+                  std::span<const double> pressure_gradient);
   void gather_sinks();
   void pin_closed_basins();
   void find_basins();

@@ -33,9 +33,10 @@ void load_pair(const Grid<D>& grid, int block, const Reals& a, const Reals& b, d
     // Interleave by loading each field with a stride of four and half the width.
     alignas(64) double other[mpm::Transfer<D>::kTileNodes * 4];
     load_tile<D, kVector, kPair<D>>(grid, block, a.data(), tile);
-    load_tile<D, kVector, kPair<D>>(grid, block, b.data(), other);
+    if (&a != &b) load_tile<D, kVector, kPair<D>>(grid, block, b.data(), other);
+    const double* second = &a != &b ? other : tile;
     for (int i = 0; i < mpm::Transfer<D>::kTileNodes; ++i)
-      tile[i * 4 + 2] = other[i * 4], tile[i * 4 + 3] = other[i * 4 + 1];
+      tile[i * 4 + 2] = second[i * 4], tile[i * 4 + 3] = second[i * 4 + 1];
   } else {
     load_tile<D, kVector, kPair<D>>(grid, block, a.data(), tile);
     load_tile<D, kVector, kPair<D>>(grid, block, b.data(), tile + 4);
@@ -57,7 +58,7 @@ POLDER_INLINE void gather_pack(const double* tile, const BlockFrame<D>& frame, c
       if constexpr (kMoment) store(r[d][a], s.axis[d].weight[a] * s.distance(frame, d, a, position[d], h));
     }
   Reg<kW> value[kLanes], slope[kGradient ? D : 1][kLanes], moment[kMoment ? D : 1][kLanes];
-  for (int l = 0; l < kLanes; ++l) {
+  const auto lane = [&](int l) __attribute__((always_inline)) {
     const double* first = tile + s.start[l] * kW;
     Reg<kW> v{}, dx{}, dy{}, dz{}, mx{}, my{}, mz{};
     for (int k = 0; k < (D == 3 ? 3 : 1); ++k) {
@@ -93,6 +94,14 @@ POLDER_INLINE void gather_pack(const double* tile, const BlockFrame<D>& frame, c
       moment[0][l] = mx, moment[1][l] = my;
       if constexpr (D == 3) moment[2][l] = mz;
     }
+  };
+  // In the plane what a lane gathers fits in registers, if the lanes are known at compile time. Through
+  // memory a pack would be read from pieces that have just been written, which stalls.
+  if constexpr (D == 2) {
+#pragma GCC unroll 8
+    for (int l = 0; l < kLanes; ++l) lane(l);
+  } else {
+    for (int l = 0; l < kLanes; ++l) lane(l);
   }
   Pack f[kW];
   to_packs<kW>(value, f);
@@ -217,6 +226,9 @@ POLDER_INLINE void move_pack(ParticleSet<D>& set, int p, Mask real, const Pack* 
     far = max(far, abs(step) * (1 / h));
     fast += carried[d] * carried[d];
   }
+  fast = select(real, fast, Pack{});
+  if (all(fast <= broadcast(result.fast)) && all(far <= broadcast(result.far)))
+    return;  // nothing new: the rule
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!real[lane]) continue;
     if (!(fast[lane] < 1e12)) result.finite = false;

@@ -69,9 +69,11 @@ void load_tile(const Grid<D>& grid, int block, const double* field, double* tile
         const double* in = field + (static_cast<std::size_t>(n < 0 ? 0 : n) * Grid<D>::kCells +
                                     ((D == 3 ? z * kSide : 0) + y) * kSide + lo[0]) *
                                        kWidth;
-        for (int x = 0; x < hi[0] - lo[0]; ++x)
-          for (int c = 0; c < kWidth && c < kStride; ++c)
-            out[x * kStride + c] = n < 0 ? 0.0 : in[x * kWidth + c];
+        using Node = Reg<(kWidth < kStride ? kWidth : kStride)>;
+        if (n < 0)
+          for (int x = 0; x < hi[0] - lo[0]; ++x) Node::zero().store(out + x * kStride);
+        else
+          for (int x = 0; x < hi[0] - lo[0]; ++x) Node::load(in + x * kWidth).store(out + x * kStride);
       }
   }
 }
