@@ -239,12 +239,13 @@ void Simulation::Run<D>::visit(StateVisitor& v) {
   if (world->pore_water) {
     PoreWater<D>& water = *world->pore_water;
     Reals pressure = water.pressure.pressure();
-    v.reals("pore_pressure", pressure);
+    std::vector<int> pressure_cells = water.pressure.pressure_cells();
+    v.reals("pore_pressure", pressure), v.integers("pressure_cells", pressure_cells);
     v.number("outflow", water.outflow), v.number("storage", water.storage);
     if (v.reading()) {
       water.pressure.carry();
       update_water_cells(*world, time);
-      water.pressure.pressure() = pressure;
+      water.pressure.restore(pressure, pressure_cells);
     }
   }
   if (v.reading()) laws_set = false;

@@ -52,6 +52,12 @@ void PressureField<D>::carry() {
 }
 
 template <int D>
+void PressureField<D>::restore(const Reals& pressure, const std::vector<int>& pressure_cells) {
+  if (pressure_cells != pressure_cells_) cells_revision_ = 0;
+  p_ = pressure, pressure_cells_ = pressure_cells;
+}
+
+template <int D>
 void PressureField<D>::refresh() {
   const Grid<D>& grid = cells_.grid();
   if (p_.empty()) carry();
@@ -59,6 +65,8 @@ void PressureField<D>::refresh() {
     throw std::logic_error("PressureField: the grid changed and carry() was not called");
   if (cells_revision_ == cells_.revision()) return;
   cells_revision_ = cells_.revision();
+  pressure_cells_.clear();
+  for (const ActiveCell<D>& c : cells_.cells()) pressure_cells_.push_back(c.slot);
   gradient_.build(cells_);
   for (int s = 0; s < grid.slots(); ++s)
     if (!cells_.active(s)) p_[s] = 0;

@@ -85,6 +85,12 @@ class PressureField {
   // After WaterCells::update returned true (harmless otherwise): new lists, pressure zero in inactive cells.
   // A cell that has just become active starts between its neighbours and the prescribed pressures around it.
   void refresh();
+  // Slots of the cells that were active in the last refresh(). They are part of the state: cells follow the
+  // points at the start of a step, so the pressure belongs to cells from before the last motion.
+  const std::vector<int>& pressure_cells() const { return pressure_cells_; }
+  // Takes up the pressure of an earlier run. If the present cells are not those it belongs to, the next
+  // refresh() brings it to them, as it would have in that run.
+  void restore(const Reals& pressure, const std::vector<int>& pressure_cells);
   void set_tolerance(double tolerance) { accuracy_.tolerance = tolerance; }
 
   Reals& pressure() { return p_; }  // [Pa], slots
@@ -140,8 +146,9 @@ class PressureField {
   std::uint64_t grid_revision_ = 0;
   std::uint64_t cells_revision_ = 0;
 
-  Reals p_, dp_;     // slots
-  Reals node_grad_;  // slots * kStride
+  Reals p_, dp_;                     // slots
+  std::vector<int> pressure_cells_;  // slots that p_ belongs to
+  Reals node_grad_;                  // slots * kStride
   // Faces, interior then boundary; explicit volume flow along the axis (interior) or outwards (boundary)
   // [m3/s].
   Reals flow_;
