@@ -200,6 +200,11 @@ def draw_field(series, name, field, frames, phreatic, output):
     return style.save_figure(figure, os.path.join(output, f"{series.name}_{name}.png"))
 
 
+def is_void(series, field, frames):
+    """Nothing to see: 0 everywhere in every frame to be drawn, such as the plastic strain of an elastic material."""
+    return all(not np.any(frame.read(f"{series.kind}/{field.array}")) for frame in frames)
+
+
 def draw(results, output, names, times):
     """All figures of fields; `names` None: the usual ones, as far as the frames hold them."""
     if names and not results.series:
@@ -210,7 +215,7 @@ def draw(results, output, names, times):
         frames = series.nearest(times)
         for name in names or (FLUID_DEFAULT if series.kind == "CellData" else SOIL_DEFAULT):
             field = find_field(name, series)
-            if field is not None:
+            if field is not None and (names or not is_void(series, field, frames)):
                 path = draw_field(series, name, field, frames, phreatic, output)
                 written += [path] if path else []
     for name in names or []:

@@ -14,7 +14,7 @@ import figure_style as style
 # Title, pattern of the columns (without unit), logarithmic. A column belongs to the first panel it matches.
 PANELS = [
     ("Energy", r"energy_(error|defect|drift)|energy_balance.*", True, "energy_error"),
-    ("Energy and work", r".*(energy|dissipat|work).*", False, "energy"),
+    ("Energy and work", r".*(energy|dissipat|work|transfer_loss).*", False, "energy"),
     ("Out-of-balance force ratio", r".*(unbalanced|out_of_balance).*", True, "unbalanced_force"),
     ("Mass error", r".*mass.*(error|drift|defect).*|.*(error|drift|defect).*mass.*", True, "mass_error"),
     ("Momentum defect", r".*momentum.*(error|drift|defect).*|.*(error|drift|defect).*momentum.*", True, "momentum"),
@@ -23,7 +23,7 @@ PANELS = [
     ("Discharge", r".*discharge.*", False, "discharge"),
     ("Exit gradient", r".*exit_gradient.*", False, "exit_gradient"),
 ]
-COUNTERS = {"time[s]", "step", "dt[s]"}
+COUNTERS = {"time[s]", "step", "dt[s]", "stage"}
 
 
 def split_unit(column):
@@ -47,9 +47,11 @@ def draw_lines(axis, time, table, columns, title, logarithmic):
     positive = drawn[np.isfinite(drawn) & (drawn > 0)]
     logarithmic = logarithmic and positive.size > 0 and positive.max() > 10 * positive.min()
     negative = any(np.any(table[column] < 0) for column in columns)
-    for column in columns:
+    # What is exactly 0 is told by one line of the legend, it needs no curve.
+    zero = [column for column in columns if not np.any(table[column] != 0)]
+    for column in [column for column in columns if column not in zero] or zero:
         name, values = readable(split_unit(column)[0]), table[column]
-        if not np.any(values != 0):
+        if len(zero) == len(columns):
             name += " (exactly 0)"
         if logarithmic:
             values = np.where(values != 0, np.abs(values), np.nan)  # zero has no place on this axis
@@ -60,7 +62,13 @@ def draw_lines(axis, time, table, columns, title, logarithmic):
         axis.yaxis.set_minor_locator(ticker.NullLocator())
     label_axis(axis, title + (" (magnitude)" if logarithmic and negative else ""),
                [split_unit(column)[1] for column in columns])
-    if len(columns) > 1 or positive.size == 0:
+    if zero and len(zero) < len(columns):
+        axis.plot([], [], " ", label="exactly 0: " + ",\n".join(readable(split_unit(column)[0]) for column in zero))
+    if len(columns) > 3 and not logarithmic:  # headroom, so that the legend covers no curve
+        low, high = axis.get_ylim()
+        axis.set_ylim(low, high + 0.8 * (high - low))
+        axis.legend(loc="upper left", ncol=2)
+    elif len(columns) > 1 or positive.size == 0:
         axis.legend(loc="best", ncol=1 if len(columns) < 5 else 2)
 
 
@@ -70,9 +78,9 @@ def draw_step(axis, time, table):
     limits = table.get("dt_limit")
     axis.plot(time, dt, color="0.7", linewidth=0.8)
     if isinstance(limits, list):
-        for name in dict.fromkeys(limits):
+        for name in dict.fromkeys(limit for limit in limits if limit):  # none before the first step
             at = np.array([limit == name for limit in limits])
-            axis.plot(time[at], dt[at], ".", markersize=3, label=readable(name) or "none")
+            axis.plot(time[at], dt[at], ".", markersize=3, label=readable(name))
         axis.legend(title="limited by", title_fontsize=7)
     if np.nanmin(dt) > 0 and np.nanmax(dt) > 20 * np.nanmin(dt):
         axis.set_yscale("log")
@@ -81,13 +89,17 @@ def draw_step(axis, time, table):
     label_axis(axis, "Step", ["s"])
 
 
+def finish_panel(axis):
+    axis.grid(True, linewidth=0.3, color="0.88")
+    axis.tick_params(direction="in", which="both", top=True, right=True)
+
+
 def finish(figure, axes, unit, columns=2):
     for number, axis in enumerate(axes):
         axis.set_title(f"{style.letter(number)}  {axis.get_title()}", loc="left")
         axis.set_title("")
         axis.set_xlabel(f"$t$ [{unit}]" if number + columns >= len(axes) else "")
-        axis.grid(True, linewidth=0.3, color="0.88")
-        axis.tick_params(direction="in", which="both", top=True, right=True)
+        finish_panel(axis)
         axis.margins(x=0.01)
     figure.align_ylabels(axes)
 

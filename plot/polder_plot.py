@@ -26,6 +26,7 @@ except ImportError as missing:
     print(f"error: {missing}; polder plot needs python3-numpy, python3-h5py and python3-matplotlib", file=sys.stderr)
     sys.exit(ENVIRONMENT)
 
+import expectation_figures
 import field_figures
 import history_figures
 import probe_figures
@@ -63,6 +64,7 @@ def draw(options):
     if not options.field:  # a chosen field means: this picture and nothing else
         written += history_figures.draw(results, output)
         written += probe_figures.draw(results, output)
+        written += expectation_figures.draw(results, output)
     return written
 
 

@@ -64,7 +64,8 @@ def draw_histories(seconds, probes, output):
     panels = []
     for key, label, quantity_unit, pick in HISTORIES:
         lines = [(name, *line) for name, probe in probes.items() for line in pick(probe)]
-        if lines:
+        # Plastic strain of what stays elastic is no news.
+        if lines and (key != "deviatoric_strain" or any(np.any(values > 0) for _, _, values, _ in lines)):
             panels.append((key, label, quantity_unit, lines))
     if not panels:
         return []

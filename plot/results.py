@@ -8,6 +8,7 @@ import glob
 import json
 import os
 import re
+import tomllib
 
 import h5py
 import numpy as np
@@ -126,7 +127,21 @@ class Results:
                     frames.append(frame)
         return Series(name, sorted(frames, key=lambda frame: frame.time))
 
-    def table(self, name):
+    def case(self):
+        """The resolved case; empty if the folder has none."""
+        path = self.path("case.toml")
+        if not os.path.exists(path):
+            return {}
+        try:
+            with open(path, "rb") as file:
+                return tomllib.load(file)
+        except tomllib.TOMLDecodeError as error:
+            raise PlotError(f"{path}: is damaged ({error})", 4) from None
+
+    def vertical(self):
+        return "z" if self.case().get("grid", {}).get("space") == "3d" else "y"
+
+    def table(self, name, needs_time=True):
         """Columns by name: numbers as arrays, words as lists; None if there is no such file or no row in it."""
         path = self.path(name)
         if not os.path.exists(path):
@@ -145,6 +160,8 @@ class Results:
                 table[column] = np.array([float(cell) if cell else np.nan for cell in cells])
             except ValueError:
                 table[column] = cells
+        if not needs_time:
+            return table
         if "time[s]" not in table or isinstance(table["time[s]"], list):
             raise PlotError(f"{path}: has no column time[s]", 4)
         return table

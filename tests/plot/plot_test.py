@@ -69,6 +69,54 @@ class PlotTest(unittest.TestCase):
         for part in ("error: ",) + parts:
             self.assertIn(part, result.stderr)
 
+    def write(self, name, text):
+        with open(os.path.join(self.root, "expected", name), "w", encoding="utf-8") as file:
+            file.write(text)
+
+    def test_profiles_and_histories_stand_beside_their_references(self):
+        os.makedirs(os.path.join(self.root, "expected"), exist_ok=True)
+        self.write("case.toml", """
+[[stage]]
+name = "first"
+[[stage]]
+name = "second"
+[[measure]]
+name = "pressure"
+kind = "cells"
+quantity = "pore_pressure"
+along = "y"
+[[measure]]
+name = "top"
+quantity = "displacement_y"
+[[measure]]
+name = "alone"
+quantity = "displacement_y"
+[[expect]]
+measure = "pressure"
+reference = "reference_a.csv"
+column = "late"
+time = 1.0
+[[expect]]
+measure = "top"
+reference = "reference_b.csv"
+from_stage = "second"
+""")
+        self.write("reference_a.csv", "# exact\ny[m],early[Pa],late[Pa]\n0,20,10\n1,0,0\n")
+        self.write("reference_b.csv", "t[s],u[m]\n0,0\n1,-1\n")
+        self.write("profile_pressure.csv", "time[s],y[m],pore_pressure[Pa]\n" + "".join(
+            f"{t},{0.1 * i},{10 - i}\n" for t in (0, 1, 2) for i in range(11)))
+        self.write("probes.csv", "time[s],top:uy[m],alone:uy[m]\n0,0,0\n1,0,1\n2,-1,2\n")
+        self.write("history.csv", "time[s],step,stage\n0,0,0\n1,1,1\n2,2,1\n")
+        result = plot(os.path.join(self.root, "expected"))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        plots = os.path.join(self.root, "expected", "plots")
+        self.check_picture(os.path.join(plots, "expectations.png"))
+        self.assertEqual(len(columns(os.path.join(plots, "expectations_pressure.csv"))["y[m]"]), 33)
+        self.assertEqual(columns(os.path.join(plots, "expectations_top.csv"))["top[m]"], ("0", "0", "-1"))
+        self.assertFalse(os.path.exists(os.path.join(plots, "expectations_alone.csv")))
+        self.write("case.toml", "no toml")
+        self.check_error(plot(os.path.join(self.root, "expected")), 4, "case.toml", "damaged")
+
     def test_frames_follow_the_vtkhdf_layout(self):
         with h5py.File(os.path.join(self.folder, "soil_000002.hdf"), "r") as file:
             group = file["VTKHDF"]
