@@ -62,7 +62,8 @@ int run(const Arguments& a, std::ostream&, std::ostream&) {
 }
 
 Option set_option() {
-  return {"--set", "", "KEY=VALUE", "Replace a key of the case, e.g. --set grid.cell=0.05.", true};
+  return {"--set", "", "KEY=VALUE", "Replace a key of the case, e.g. --set grid.cell=0.05; KEY= removes it.",
+          true};
 }
 
 Option threads_option() {

@@ -82,7 +82,7 @@ Node parse_value(const std::string& text, const std::string& origin, std::vector
   Node value;
   if (failures.empty() && table.members.size() == 1) {
     value = std::move(table.members.front().value);
-  } else if (text.empty() || text.find_first_of("[]{}\"'\n=") != std::string::npos) {
+  } else if (text.find_first_of("[]{}\"'\n=") != std::string::npos) {
     diagnostics.push_back(
         {origin, 0, 0, key, "the value is not TOML", "a number, true or false, a text, [list]"});
     value = Node::of(text);
@@ -148,7 +148,8 @@ void apply_setting(Node& document, const std::string& setting, std::vector<Diagn
     return;
   }
   const std::string path = setting.substr(0, equals);
-  Node value = parse_value(setting.substr(equals + 1), origin, diagnostics, path);
+  const bool removes = equals + 1 == setting.size();  // "key=": as if the case did not give it
+  Node value = removes ? Node() : parse_value(setting.substr(equals + 1), origin, diagnostics, path);
   Node* at = &document;
   const std::vector<std::string> parts = split_path(path);
   std::string walked;
@@ -161,10 +162,19 @@ void apply_setting(Node& document, const std::string& setting, std::vector<Diagn
     if (at->is(Node::Kind::array)) {
       Node* item = find_item(*at, parts[i]);
       if (!item) return fail(walked + " has no element \"" + parts[i] + "\"", item_names(*at));
+      if (last && removes) {
+        at->items.erase(at->items.begin() + (item - at->items.data()));
+        return;
+      }
       if (last) *item = std::move(value);
       at = item;
     } else if (at->is(Node::Kind::table)) {
       Node* next = at->find(parts[i]);
+      if (last && removes) {
+        if (!next) return fail("is not there to be removed", "a key that the case gives");
+        std::erase_if(at->members, [&](const Member& m) { return m.key == parts[i]; });
+        return;
+      }
       if (last) {
         at->set(parts[i], std::move(value));
         return;

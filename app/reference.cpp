@@ -23,7 +23,9 @@ constexpr const char* kIntroduction =
     "part of a side "
     "is `{ side = \"left\", from = [0, 0], to = [0, 2] }`.\n\n"
     "`polder run CASE --set key=value` replaces any key; elements of lists are named by number or name: "
-    "`--set grid.cell=0.05`, `--set stage.2.duration=\"20 s\"`, `--set material.sand.young=\"20 MPa\"`.\n\n"
+    "`--set grid.cell=0.05`, `--set stage.2.duration=\"20 s\"`, `--set material.sand.young=\"20 MPa\"`; "
+    "nothing behind the = "
+    "removes the key or the element: `--set boundary.base.coefficient=`.\n\n"
     "This page is the output of `polder schema`; `polder schema --json` gives a JSON Schema.\n";
 
 std::string cell_text(std::string text) {

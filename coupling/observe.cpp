@@ -271,7 +271,12 @@ std::vector<std::pair<double, double>> Simulation::Run<D>::phreatic_line() const
     const Point<D> c = water.cells.centre(water.cells.cells()[face.cell].index);
     line.emplace_back(c[0], c[D - 1] + std::min(face.distance, 1.5 * grid.spacing()));
   }
+  // Above a hole in the water lies its surface all the same: the highest point of each column of cells
+  // counts.
   std::sort(line.begin(), line.end());
+  const auto first = std::unique(line.rbegin(), line.rend(),
+                                 [](const auto& a, const auto& b) { return a.first == b.first; });
+  line.erase(line.begin(), first.base());
   return line;
 }
 

@@ -24,6 +24,17 @@ def read_probes(table):
     return probes
 
 
+def different(probes):
+    """Without those that follow a particle which another follows already, for another quantity."""
+    kept = {}
+    for name, probe in probes.items():
+        same = [k for k in kept.values() if all(q in k and np.array_equal(k[q], probe.get(q), equal_nan=True)
+                                                for q in ("x", "y"))]
+        if "x" not in probe or not same:
+            kept[name] = probe
+    return kept
+
+
 def length(probe, prefix):
     """Magnitude of a vector from its components, None if the table has none of them."""
     parts = [probe[prefix + axis] for axis in "xyz" if prefix + axis in probe]
@@ -69,18 +80,26 @@ def draw_histories(seconds, probes, output):
             panels.append((key, label, quantity_unit, lines))
     if not panels:
         return []
-    figure, axes = style.grid_of_panels(len(panels))
+    figure, axes = style.grid_of_panels(len(panels) + 1)  # the last holds the legend of all
+    legend = axes.pop()
     colour = {name: style.CYCLE[i % len(style.CYCLE)] for i, name in enumerate(probes)}
     for axis, (key, label, quantity_unit, lines) in zip(axes, panels):
         columns = {"time[s]": seconds}
         for name, suffix, values, line_style in lines:
-            axis.plot(seconds / divisor, values, line_style, color=colour[name],
-                      label=f"{name}, {suffix}" if suffix else name)
+            axis.plot(seconds / divisor, values, line_style, color=colour[name])
             columns[f"{name}:{suffix or key}[{quantity_unit}]"] = values
         label_axis(axis, label, [quantity_unit])
-        axis.legend(ncol=1 if len(lines) < 5 else 2)
         style.save_table(os.path.join(output, f"probes_{key}.csv"), columns)
     finish(figure, axes, unit)
+    for axis in axes[-2:]:
+        axis.set_xlabel(f"$t$ [{unit}]")
+    legend.axis("off")
+    for name in probes:
+        legend.plot([], [], color=colour[name], label=name)
+    styles = {suffix: line_style for *_, lines in panels for _, suffix, _, line_style in lines if suffix}
+    for suffix, line_style in styles.items():
+        legend.plot([], [], line_style, color="0.4", label=suffix)
+    legend.legend(loc="center", ncol=2)
     return [style.save_figure(figure, os.path.join(output, "probes.png"))]
 
 
@@ -113,5 +132,5 @@ def draw(results, output):
     table = results.table("probes.csv")
     if table is None:
         return []
-    probes = read_probes(table)
+    probes = different(read_probes(table))
     return draw_histories(table["time[s]"], probes, output) + draw_stress_paths(table["time[s]"], probes, output)

@@ -152,6 +152,10 @@ TEST_CASE("settings replace keys, elements of lists by number and by name") {
   CHECK(read({"formulation=dry"}).formulation == "dry");
   CHECK(read({"body.1.polygon=[[0,0],[1,0],[0,1]]"}).bodies[0].polygon.size() == 3);
   CHECK(read({"grid.cell=0.05", "grid.cell=0.2"}).grid.cell == 0.2);
+  CHECK(read({"stage.fall.name="}).stages[0].name == "stage-1");
+  CHECK(complaint(kMinimal, {"stage.1="}).find("stage: is empty") != std::string::npos);
+  CHECK(complaint(kMinimal, {"grid.shape="}) ==
+        "--set grid.shape=: grid.shape: is not there to be removed; allowed: a key that the case gives");
 }
 
 TEST_CASE("wrong settings are told with the setting as their place") {
