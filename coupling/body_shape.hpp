@@ -10,19 +10,22 @@ namespace polder::coupling {
 
 class BodyShape {
  public:
-  // dimension 2 or 3; the last axis is vertical.
-  BodyShape(const Body& body, int dimension);
+  // The last axis of the grid is vertical.
+  BodyShape(const Body& body, const GridSpec& grid);
 
   bool inside(const Vector3& x) const;
   const Vector3& lower() const { return lower_; }
   const Vector3& upper() const { return upper_; }
-  bool is_box() const { return body_.box.has_value(); }
+  // Axes along which the body ends at lower() and upper() everywhere: all of a box, the length of a prism.
+  bool is_flat(int axis) const { return body_.box || (prism() && axis == 1); }
   Vector3 centroid() const;
 
   // Stretches of the vertical line through x that lie inside, bottom up.
   std::vector<std::pair<double, double>> vertical_intervals(const Vector3& x) const;
 
  private:
+  bool prism() const { return up_ == 2 && !body_.polygon.empty(); }
+
   const Body& body_;
   int up_;  // vertical axis
   Vector3 lower_{}, upper_{};

@@ -69,6 +69,7 @@ mpm::BoundarySet<D> make_boundaries(const Scene& scene) {
     s.name = b.name;
     s.side = b.side.value_or(-1);
     if (b.segment) s.has_segment = true, s.from = point<D>((*b.segment)[0]), s.to = point<D>((*b.segment)[1]);
+    s.patch = b.polygon;
     s.coefficient = b.coefficient;
     switch (b.kind) {
       case Boundary::Kind::fixed:
@@ -94,38 +95,47 @@ mpm::BoundarySet<D> make_boundaries(const Scene& scene) {
   return mpm::BoundarySet<D>(std::move(specs));
 }
 
-void add_loads(const Scene& scene, mpm::Skeleton<2>& skeleton) {
+template <int D>
+mpm::SurfaceLoad<D> make_load(const Scene& scene, const Boundary& b, double piece) {
+  if constexpr (D == 2) {
+    if (!b.segment) throw InputError("boundary '" + b.name + "': a load in 2D acts on a segment");
+    return mpm::line_load(b.name, point<2>((*b.segment)[0]), point<2>((*b.segment)[1]), piece,
+                          scene.grid.space);
+  } else {
+    if (b.polygon.empty()) throw InputError("boundary '" + b.name + "': a load in 3D acts on a polygon");
+    return mpm::patch_load(b.name, b.polygon, piece);
+  }
+}
+
+template <int D>
+void add_loads(const Scene& scene, mpm::Skeleton<D>& skeleton) {
+  int per_axis = 1;
+  for (const Body& body : scene.bodies) per_axis = std::max(per_axis, body.particles_per_axis);
   for (const Boundary& b : scene.boundaries) {
     if (b.kind != Boundary::Kind::traction && b.kind != Boundary::Kind::pressure) continue;
-    int per_axis = 1;
-    for (const Body& body : scene.bodies) per_axis = std::max(per_axis, body.particles_per_axis);
-    mpm::SurfaceLoad load(b.name, point<2>((*b.segment)[0]), point<2>((*b.segment)[1]),
-                          scene.grid.cell / per_axis, scene.grid.space);
+    mpm::SurfaceLoad<D> load = make_load<D>(scene, b, scene.grid.cell / per_axis);
     if (b.kind == Boundary::Kind::pressure)
       load.pressure = in_time(b.pressure);
     else
-      for (int d = 0; d < 2; ++d) load.traction[d] = in_time(b.traction[d]);
+      for (int d = 0; d < D; ++d) load.traction[d] = in_time(b.traction[d]);
     skeleton.loads().push_back(std::move(load));
   }
-}
-void add_loads(const Scene& scene, mpm::Skeleton<3>&) {
-  for (const Boundary& b : scene.boundaries)
-    if (b.kind == Boundary::Kind::traction || b.kind == Boundary::Kind::pressure)
-      throw InputError("boundary '" + b.name + "': loads on surfaces are available in 2D scenes");
 }
 
 template <int D>
 void add_body(const Scene& scene, const Body& body, World<D>& world) {
   const mpm::MaterialParameters& material = scene.materials[body.material];
   const mpm::StateLayout& layout = world.layouts[body.material];
-  const BodyShape shape(body, D);
+  const BodyShape shape(body, scene.grid);
   ParticleSet<D>& set = world.skeleton.add_body();
   set.name = body.name;
   set.material = body.material;
   set.density_solid = material.density_solid;
   set.state.resize(layout.count());
+  std::array<bool, D> flat;
+  for (int d = 0; d < D; ++d) flat[d] = shape.is_flat(d);
   const auto region = mpm::seed_region<D>(world.skeleton.grid(), body.particles_per_axis,
-                                          point<D>(shape.lower()), point<D>(shape.upper()), shape.is_box());
+                                          point<D>(shape.lower()), point<D>(shape.upper()), flat);
   mpm::seed_particles<D>(set, region, scene.grid.space, material.dry_density(), body.jitter, body.seed,
                          [&](const Point<D>& x) { return shape.inside(vector3<D>(x)); });
   if (set.count() == 0)
@@ -173,7 +183,7 @@ std::unique_ptr<World<D>> build_world(const Scene& scene) {
   auto world = std::make_unique<World<D>>(scene, make_grid<D>(scene.grid), make_options(scene),
                                           make_boundaries<D>(scene));
   for (const Body& body : scene.bodies) add_body<D>(scene, body, *world);
-  add_loads(scene, world->skeleton);
+  add_loads<D>(scene, world->skeleton);
   const Formulation* formulation = find_formulation(scene.formulation);
   if (formulation != nullptr && formulation->carrier == WaterCarrier::cells) {
     fdm::WaterProperties<D> water;

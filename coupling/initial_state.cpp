@@ -67,7 +67,7 @@ double k0_at(const InitialStress& s, double depth) {
 
 std::vector<BodyShape> shapes_of(const Scene& scene) {
   std::vector<BodyShape> shapes;
-  for (const Body& b : scene.bodies) shapes.emplace_back(b, scene.dimension());
+  for (const Body& b : scene.bodies) shapes.emplace_back(b, scene.grid);
   return shapes;
 }
 

@@ -90,8 +90,9 @@ struct WaterSpec {
   double density = 1000;        // [kg/m3]
   double bulk_modulus = 2.2e9;  // [Pa], may be infinite
   double viscosity = 1e-3;      // dynamic [Pa s]; converts an intrinsic permeability given in the case file
-  std::vector<Vector3>
-      phreatic;  // polyline, soil below it is saturated; empty = all soil of porous materials is
+  // Polyline, soil below it is saturated; empty = all soil of porous materials is. In 3D the first two
+  // components of its points are x and z, and it is the same at every y.
+  std::vector<Vector3> phreatic;
   double saturation_above = 0;  // degree of saturation above it [-]
   double suction_above = 0;     // suction above it [Pa]
   // Pore pressure below it at the start: none, at rest, steady flow under the conditions of time 0, or the
@@ -130,11 +131,12 @@ struct InitialStress {
 struct Body {
   std::string name;
   int material = 0;  // index into Scene::materials
-  // Exactly one shape: polygon (2D; in 3D extruded between z_from and z_to along the third axis is not
-  // offered), box, disk (2D) or ball (3D).
+  // Exactly one shape: polygon, box, disk (2D) or ball (3D). In 3D a polygon is the section of a prism across
+  // y: the first two components of its points are x and z.
   std::vector<Vector3> polygon;
-  std::optional<std::array<Vector3, 2>> box;  // lower and upper corner
-  std::optional<Vector3> centre;              // of a disk or ball
+  std::optional<std::array<double, 2>> extrude;  // of the prism along y [m]; absent: through the whole grid
+  std::optional<std::array<Vector3, 2>> box;     // lower and upper corner
+  std::optional<Vector3> centre;                 // of a disk or ball
   double radius = 0;
   int particles_per_axis = 2;  // particles in a cell along each axis
   double jitter = 0;           // random displacement as a share of the particle spacing [0, 0.9]
@@ -151,15 +153,16 @@ struct Body {
 struct Boundary {
   std::string name;
   enum class Kind { fixed, roller, friction, velocity, free, traction, pressure } kind = Kind::roller;
-  // Either a side of the grid (2 * axis + (0 lower, 1 upper)), or a segment in 2D from -> to. For constraints
-  // the soil lies to the left of the segment, seen from `from` to `to`; loads act on the material surface
-  // that lies on it.
+  // A side of the grid (2 * axis + (0 lower, 1 upper)), a segment from -> to (2D) or a plane polygon (3D).
+  // The soil lies to the left of the segment, seen from `from` to `to`, and on the side of the polygon from
+  // which its corners run counter-clockwise; loads act on the material surface that lies there.
   std::optional<int> side;
   std::optional<std::array<Vector3, 2>> segment;  // also restricts a side to a part of it when both are given
-  double coefficient = 0;                         // friction: tan of the friction angle [-]
+  std::vector<Vector3> polygon;
+  double coefficient = 0;                            // friction: tan of the friction angle [-]
   std::array<std::optional<TimeTable>, 3> velocity;  // velocity: prescribed components [m/s], others free
   std::array<TimeTable, 3> traction;                 // traction: force per area [Pa] on the surface
-  TimeTable pressure;  // pressure: normal compression [Pa]; acts to the left of the segment's normal
+  TimeTable pressure;                                // pressure: normal compression [Pa]; acts into the soil
   bool operator==(const Boundary&) const = default;
 };
 

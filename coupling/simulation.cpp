@@ -229,12 +229,13 @@ void Simulation::Run<D>::visit(StateVisitor& v) {
     set.restore(static_cast<int>(points));
   }
   for (std::size_t l = 0; l < skeleton.loads().size(); ++l) {
-    Reals xy;
-    for (const Point<2>& x : skeleton.loads()[l].vertices()) xy.push_back(x[0]), xy.push_back(x[1]);
-    v.reals("load_" + std::to_string(l), xy);
+    std::vector<Point<D>>& vertices = skeleton.loads()[l].vertices();
+    Reals coordinates;
+    for (const Point<D>& x : vertices) coordinates.insert(coordinates.end(), x.begin(), x.end());
+    v.reals("load_" + std::to_string(l), coordinates);
     if (v.reading())
-      for (std::size_t k = 0; k < skeleton.loads()[l].vertices().size(); ++k)
-        skeleton.loads()[l].vertices()[k] = {xy[2 * k], xy[2 * k + 1]};
+      for (std::size_t k = 0; k < vertices.size(); ++k)
+        std::copy_n(coordinates.begin() + static_cast<std::ptrdiff_t>(k * D), D, vertices[k].begin());
   }
   if (world->pore_water) {
     PoreWater<D>& water = *world->pore_water;

@@ -25,7 +25,7 @@ template <int D>
 Scene patch_of(const Scene& scene, const Body& body, bool wet) {
   Scene s = scene;
   const double h = scene.grid.cell;
-  const BodyShape shape(body, D);
+  const BodyShape shape(body, scene.grid);
   s.grid.origin = {};
   if (scene.grid.space == Space::axisymmetric) s.grid.origin[0] = shape.lower()[0];
   // Surfaces where they hurt most under USL: where a node beyond the last points carries next to nothing.
@@ -35,6 +35,7 @@ Scene patch_of(const Scene& scene, const Body& body, bool wet) {
   const double reach[3] = {whole + 0.75, whole + 1.0 / body.particles_per_axis, whole + 0.3};
   Body b = body;
   b.polygon.clear();
+  b.extrude.reset();
   b.centre.reset();
   b.velocity = {};
   b.spin = 0;

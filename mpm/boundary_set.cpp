@@ -1,16 +1,21 @@
 #include "mpm/boundary_set.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "mpm/plane_patch.hpp"
 
 namespace polder::mpm {
 namespace {
 
-constexpr double kOn = 1e-6;       // a node this close to a line, in cells, lies on it
-constexpr double kBehind = 2.001;  // rows of nodes held behind an inner segment, in cells
+constexpr double kOn = 1e-6;       // a node this close to a line or plane, in cells, lies on it
+constexpr double kBehind = 2.001;  // rows of nodes held behind an inner segment or patch, in cells
 
 // Is the node constrained by the boundary, and with which normal?
 template <int D>
-bool constrained(const Grid<D>& grid, const BoundarySpec<D>& spec, const Index<D>& node, Point<D>& normal) {
+bool constrained(const Grid<D>& grid, const BoundarySpec<D>& spec, const std::optional<PlanePatch>& patch,
+                 const Index<D>& node, Point<D>& normal) {
   normal = Point<D>{};
   const double h = grid.spacing();
   if (spec.side >= 0) {
@@ -33,8 +38,13 @@ bool constrained(const Grid<D>& grid, const BoundarySpec<D>& spec, const Index<D
     const double along = ((x[0] - spec.from[0]) * tx + (x[1] - spec.from[1]) * ty) / length;
     const double height = (x[0] - spec.from[0]) * normal[0] + (x[1] - spec.from[1]) * normal[1];
     return along >= -kOn * h && along <= length + kOn * h && height <= kOn * h && height >= -kBehind * h;
+  } else {
+    if (!patch) return false;
+    normal = patch->normal();
+    const Point<D> x = grid.position(node);
+    const double height = patch->height(x);
+    return height <= kOn * h && height >= -kBehind * h && patch->contains(patch->project(x), kOn * h);
   }
-  return false;
 }
 
 }  // namespace
@@ -47,6 +57,8 @@ void BoundarySet<D>::update(const Grid<D>& grid) {
   held_.assign(grid.slots(), 0);
   for (std::size_t s = 0; s < specs_.size(); ++s) {
     const BoundarySpec<D>& spec = specs_[s];
+    std::optional<PlanePatch> patch;
+    if (spec.side < 0 && !spec.patch.empty()) patch.emplace(spec.patch);
     // One rule for a node of one side: the later one.
     bool overrules = false;
     for (std::size_t e = 0; e < s; ++e) overrules |= spec.side >= 0 && specs_[e].side == spec.side;
@@ -55,14 +67,19 @@ void BoundarySet<D>::update(const Grid<D>& grid) {
       bool inside = true;
       for (int d = 0; d < D; ++d) inside &= node[d] <= grid.cells()[d];
       Point<D> normal;
-      if (!inside || !constrained<D>(grid, spec, node, normal)) continue;
+      if (!inside || !constrained<D>(grid, spec, patch, node, normal)) continue;
       if (overrules)
         std::erase_if(nodes_,
                       [&](const Node& n) { return n.slot == slot && specs_[n.spec].side == spec.side; });
       if (spec.kind == BoundaryKind::free) continue;
-      nodes_.push_back({slot, static_cast<int>(s), normal});
+      nodes_.push_back({slot, static_cast<int>(s), normal, 0});
     }
   }
+  // By node, in the order of the case, friction last.
+  std::stable_sort(nodes_.begin(), nodes_.end(), [&](const Node& a, const Node& b) {
+    if (a.slot != b.slot) return a.slot < b.slot;
+    return specs_[a.spec].kind != BoundaryKind::friction && specs_[b.spec].kind == BoundaryKind::friction;
+  });
   for (const Node& n : nodes_) {
     const BoundarySpec<D>& spec = specs_[n.spec];
     for (int d = 0; d < D; ++d) {
@@ -83,45 +100,65 @@ void BoundarySet<D>::apply(double time, double dt, const Reals& sums, Reals& v, 
     for (int d = 0; d < D; ++d)
       if (specs_[s].kind == BoundaryKind::velocity && specs_[s].prescribed[d])
         prescribed[s][d] = specs_[s].velocity[d](time);
-  for (const Node& n : nodes_) {
-    double* u = &v[static_cast<std::size_t>(n.slot) * 4];
-    const double mass = sums[static_cast<std::size_t>(n.slot) * 8];
+  for (std::size_t first = 0, next = 0; first < nodes_.size(); first = next) {
+    const int slot = nodes_[first].slot;
+    double* u = &v[static_cast<std::size_t>(slot) * 4];
+    const double mass = sums[static_cast<std::size_t>(slot) * 8];
     double before[D];
-    for (int d = 0; d < D; ++d) before[d] = u[d];
-    const BoundarySpec<D>& spec = specs_[n.spec];
-    switch (spec.kind) {
-      case BoundaryKind::free:
-        break;
-      case BoundaryKind::fixed:
-        for (int d = 0; d < D; ++d) u[d] = 0;
-        break;
-      case BoundaryKind::velocity:
-        for (int d = 0; d < D; ++d)
-          if (spec.prescribed[d]) u[d] = prescribed[n.spec][d];
-        break;
-      case BoundaryKind::roller: {
-        double normal = 0;
-        for (int d = 0; d < D; ++d) normal += u[d] * n.normal[d];
-        // A side of the grid holds both ways; behind a segment inside it material may leave the wall.
-        if (spec.side >= 0 || normal < 0)
-          for (int d = 0; d < D; ++d) u[d] -= normal * n.normal[d];
-        break;
+    std::array<bool, D> driven{};  // components with a prescribed velocity
+    const auto keep = [&] {
+      for (int d = 0; d < D; ++d) before[d] = u[d];
+    };
+    const auto account = [&](int spec) {
+      if (record)
+        for (int d = 0; d < D; ++d) reaction_[spec][d] += mass * (u[d] - before[d]) / dt;
+    };
+    for (; next < nodes_.size() && nodes_[next].slot == slot; ++next) {
+      Node& n = nodes_[next];
+      const BoundarySpec<D>& spec = specs_[n.spec];
+      keep();
+      double normal = 0;
+      for (int d = 0; d < D; ++d) normal += u[d] * n.normal[d];
+      switch (spec.kind) {
+        case BoundaryKind::free:
+          break;
+        case BoundaryKind::fixed:
+          for (int d = 0; d < D; ++d) u[d] = 0;
+          break;
+        case BoundaryKind::velocity:
+          for (int d = 0; d < D; ++d)
+            if (spec.prescribed[d]) u[d] = prescribed[n.spec][d], driven[d] = true;
+          break;
+        case BoundaryKind::roller:
+          // A side of the grid holds both ways; behind a wall inside it material may leave the wall.
+          if (spec.side >= 0 || normal < 0)
+            for (int d = 0; d < D; ++d) u[d] -= normal * n.normal[d];
+          break;
+        case BoundaryKind::friction:
+          n.pressed = std::max(0.0, -normal);  // otherwise it leaves the wall
+          if (n.pressed > 0)
+            for (int d = 0; d < D; ++d) u[d] -= normal * n.normal[d];
+          break;
       }
-      case BoundaryKind::friction: {
-        double normal = 0;
-        for (int d = 0; d < D; ++d) normal += u[d] * n.normal[d];
-        if (normal >= 0) break;  // leaves the wall
-        double slip = 0;
-        for (int d = 0; d < D; ++d) u[d] -= normal * n.normal[d], slip += u[d] * u[d];
-        slip = std::sqrt(slip);
-        if (!friction || slip == 0) break;
-        const double keep = sticking_ ? 0.0 : std::max(0.0, 1 + spec.coefficient * normal / slip);
-        for (int d = 0; d < D; ++d) u[d] *= keep;
-        break;
-      }
+      account(n.spec);
     }
-    if (record)
-      for (int d = 0; d < D; ++d) reaction_[n.spec][d] += mass * (u[d] - before[d]) / dt;
+    if (!friction) continue;
+    // Friction acts on what the other boundaries of the node leave of its velocity: beside a wall the trial
+    // velocity into that wall is no slip.
+    for (std::size_t i = first; i < next; ++i) {
+      const Node& n = nodes_[i];
+      const BoundarySpec<D>& spec = specs_[n.spec];
+      if (spec.kind != BoundaryKind::friction || !(n.pressed > 0)) continue;
+      double slip = 0;
+      for (int d = 0; d < D; ++d) slip += driven[d] ? 0 : u[d] * u[d];
+      slip = std::sqrt(slip);
+      if (slip == 0) continue;
+      keep();
+      const double share = sticking_ ? 0.0 : std::max(0.0, 1 - spec.coefficient * n.pressed / slip);
+      for (int d = 0; d < D; ++d)
+        if (!driven[d]) u[d] *= share;
+      account(n.spec);
+    }
   }
 }
 

@@ -1,12 +1,13 @@
 // Mechanical boundaries of the background grid: constraints on nodal velocities.
 //
-// A boundary acts along a side of the grid or behind a segment inside it. The list of constrained nodes is
-// built when the grid's numbering changes and applied in the order of the case file, so that at a corner the
-// later boundary has the last word where two prescribe the same component.
+// A boundary acts along a side of the grid, or behind a segment (2D) or a plane patch (3D) inside it. The
+// list of constrained nodes is built when the grid's numbering changes and applied in the order of the case
+// file, so that at a corner the later boundary has the last word where two prescribe the same component.
 //
 // Coulomb friction: a node that presses against the boundary loses its normal velocity; the tangential
 // velocity falls by at most `coefficient` times that loss. The normal force is what the node's acceleration
-// says, so where pore pressure is part of the acceleration it is the effective one.
+// says, so where pore pressure is part of the acceleration it is the effective one. A node of several
+// boundaries meets the others first: friction acts on the velocity that they leave.
 #pragma once
 
 #include <array>
@@ -26,11 +27,14 @@ struct BoundarySpec {
   std::string name;
   BoundaryKind kind = BoundaryKind::roller;
   int side = -1;  // 2 * axis + (0 lower, 1 upper), or -1
-  bool has_segment =
-      false;  // 2D: restricts the side to its part between the ends, or stands alone inside the grid
-  Point<D> from{}, to{};             // the soil lies to the left, seen from `from` to `to`
-  double coefficient = 0;            // friction
-  std::array<bool, D> prescribed{};  // velocity: which components
+  // Restricts the side to its part between the ends; in 2D it may stand alone inside the grid, with the soil
+  // to the left, seen from `from` to `to`.
+  bool has_segment = false;
+  Point<D> from{}, to{};
+  // 3D: a plane polygon inside the grid, its corners counter-clockwise seen from the soil; side is -1.
+  std::vector<Point<3>> patch{};
+  double coefficient = 0;                                   // friction
+  std::array<bool, D> prescribed{};                         // velocity: which components
   std::array<std::function<double(double)>, D> velocity{};  // [m/s] at time t
 };
 
@@ -65,6 +69,7 @@ class BoundarySet {
     int slot;
     int spec;
     Point<D> normal;  // into the material
+    double pressed;   // friction: velocity into the boundary that it has taken away
   };
   std::vector<BoundarySpec<D>> specs_;
   std::vector<Node> nodes_;

@@ -41,11 +41,11 @@ void each(const SeedRegion<D>& region, const F& f) {
 
 template <int D>
 SeedRegion<D> seed_region(const Grid<D>& grid, int per_axis, const Point<D>& lower, const Point<D>& upper,
-                          bool anchored) {
+                          const std::array<bool, D>& anchored) {
   SeedRegion<D> r;
   const double step = grid.spacing() / per_axis;
   for (int d = 0; d < D; ++d) {
-    if (anchored) {
+    if (anchored[d]) {
       r.lower[d] = lower[d];
       r.count[d] = std::max(1, static_cast<int>(std::lround((upper[d] - lower[d]) / step)));
       r.spacing[d] = (upper[d] - lower[d]) / r.count[d];
@@ -90,7 +90,8 @@ void seed_particles(ParticleSet<D>& set, const SeedRegion<D>& region, Space spac
 }
 
 #define POLDER_INSTANTIATE(D)                                                                          \
-  template SeedRegion<D> seed_region<D>(const Grid<D>&, int, const Point<D>&, const Point<D>&, bool);  \
+  template SeedRegion<D> seed_region<D>(const Grid<D>&, int, const Point<D>&, const Point<D>&,         \
+                                        const std::array<bool, D>&);                                   \
   template long count_particles<D>(const SeedRegion<D>&, const std::function<bool(const Point<D>&)>&); \
   template void seed_particles<D>(ParticleSet<D>&, const SeedRegion<D>&, Space, double, double, int,   \
                                   const std::function<bool(const Point<D>&)>&);

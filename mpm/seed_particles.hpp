@@ -15,12 +15,12 @@ struct SeedRegion {
   Point<D> spacing{};
 };
 
-// Lattice of `per_axis` points in each cell that covers [lower, upper]. anchored: the spacing is adjusted so
-// that a whole number of points fills exactly [lower, upper] (boxes); otherwise the lattice is that of the
-// grid's cells.
+// Lattice of `per_axis` points in each cell that covers [lower, upper]. Along an anchored axis the spacing is
+// adjusted so that a whole number of points fills exactly [lower, upper] (boxes, prisms along their length);
+// otherwise the lattice is that of the grid's cells.
 template <int D>
 SeedRegion<D> seed_region(const Grid<D>& grid, int per_axis, const Point<D>& lower, const Point<D>& upper,
-                          bool anchored);
+                          const std::array<bool, D>& anchored);
 
 // Number of points that seed_particles would create.
 template <int D>

@@ -80,11 +80,10 @@ template <int D>
 void Skeleton<D>::scatter(double time) {
   scatter_state(transfer_, options_.affine, sums_);
   applied_load_ = Point<D>{};
-  if constexpr (D == 2)
-    for (const SurfaceLoad& load : loads_) {
-      const Point<2> f = load.apply(grid_, options_.shape, time, sums_);
-      for (int d = 0; d < 2; ++d) applied_load_[d] += f[d];
-    }
+  for (const SurfaceLoad<D>& load : loads_) {
+    const Point<D> f = load.apply(grid_, options_.shape, time, sums_);
+    for (int d = 0; d < D; ++d) applied_load_[d] += f[d];
+  }
   if (mass_floor_ == 0) {
     double density = std::numeric_limits<double>::infinity();
     for (const auto& body : bodies_)
@@ -194,8 +193,7 @@ MoveResult Skeleton<D>::gather(double time, double dt) {
   const Reals& v = strain_velocity(time + dt, dt);
   o.update_velocity = !options_.musl && options_.affine == AffineKind::none;
   MoveResult r = update_stress_and_move(transfer_, o, options_.musl ? nullptr : &v_old_, v, v);
-  if constexpr (D == 2)
-    for (SurfaceLoad& load : loads_) load.move(grid_, options_.shape, dt, v);
+  for (SurfaceLoad<D>& load : loads_) load.move(grid_, options_.shape, dt, v, sums_);
   mapped_ = false;
   travelled_ += r.largest_displacement;
   if (!r.finite || r.largest_displacement > kSkin) {

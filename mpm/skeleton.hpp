@@ -50,7 +50,7 @@ class Skeleton {
   const SkeletonOptions& options() const { return options_; }
   BoundarySet<D>& boundaries() { return boundaries_; }
   const BoundarySet<D>& boundaries() const { return boundaries_; }
-  std::vector<SurfaceLoad>& loads() { return loads_; }
+  std::vector<SurfaceLoad<D>>& loads() { return loads_; }
 
   // A body; the reference stays valid. After adding bodies or changing materials call set_laws().
   ParticleSet<D>& add_body();
@@ -120,7 +120,7 @@ class Skeleton {
   Grid<D> grid_;
   SkeletonOptions options_;
   BoundarySet<D> boundaries_;
-  std::vector<SurfaceLoad> loads_;
+  std::vector<SurfaceLoad<D>> loads_;
   std::vector<std::unique_ptr<ParticleSet<D>>> bodies_;
   std::vector<std::shared_ptr<const void>> laws_;  // one for each body
   Transfer<D> transfer_;

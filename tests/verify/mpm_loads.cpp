@@ -113,7 +113,8 @@ double press_block(ShapeKind shape, TopLoad load, double top_offset) {
   for (int p = 0; p < set.slots(); ++p)
     set.stress[1][p] = held ? kStart : 0;  // any uniform start is at rest between plates
   if (!held) {
-    SurfaceLoad surface("top", {0.5, height}, {0, height}, 0.5 * kSpacing, Space::plane_strain);
+    SurfaceLoad<2> surface =
+        line_load("top", {0.5, height}, {0, height}, 0.5 * kSpacing, Space::plane_strain);
     const auto rise = [=](double t) { return kPressure * std::min(1.0, t / ramp); };
     if (load == TopLoad::pressure)
       surface.pressure = rise;
@@ -140,7 +141,8 @@ CylinderResult press_cylinder(ShapeKind shape, bool cell_average, double spacing
   const int across = static_cast<int>(std::lround(2.4 / spacing));
   Scene<2> scene(Grid<2>({0, 0}, {across, 4}, spacing), options, all_sides<2>(BoundaryKind::roller));
   ParticleSet<2>& set = scene.add(elastic(2000, kYoung, kPoisson), {kInner, 0}, {kOuter, 4 * spacing});
-  SurfaceLoad inside("inside", {kInner, 4 * spacing}, {kInner, 0}, 0.5 * spacing, Space::axisymmetric);
+  SurfaceLoad<2> inside =
+      line_load("inside", {kInner, 4 * spacing}, {kInner, 0}, 0.5 * spacing, Space::axisymmetric);
   inside.pressure = [](double t) { return kPressure * std::min(1.0, t / 0.2); };
   scene.skeleton.loads().push_back(inside);
   scene.damping = 0.3;

@@ -59,7 +59,9 @@ class Scene {
     set.name = material.name;
     set.material = static_cast<int>(materials.size());
     set.density_solid = material.density_solid;
-    const SeedRegion<D> region = seed_region<D>(skeleton.grid(), per_axis, lower, upper, true);
+    std::array<bool, D> whole;
+    whole.fill(true);
+    const SeedRegion<D> region = seed_region<D>(skeleton.grid(), per_axis, lower, upper, whole);
     seed_particles<D>(
         set, region, skeleton.options().space, material.dry_density(), jitter, 1,
         inside ? inside : [](const Point<D>&) { return true; });
