@@ -41,7 +41,7 @@ bool check_polygon(const Body& body, const std::string& key, Reader& reader) {
       return false;
     }
   const double area = std::abs(signed_area(p));
-  const Extent e = extent(body, 2);
+  const Extent e = extent_of(p);
   const double span = std::max(e.upper[0] - e.lower[0], e.upper[1] - e.lower[1]);
   if (area <= 1e-12 * span * span) {
     reader.error(key, "empty body: its corners lie on one line", "corners that enclose an area");
@@ -92,7 +92,7 @@ void check_overlaps(const std::vector<bool>& sound, Reader& reader) {
       if (!sound[i] || !sound[j]) continue;
       const double shared = overlap(scene.bodies[i], scene.bodies[j], scene.dimension());
       if (shared <= 1e-6 * cell) continue;
-      const bool sized = scene.dimension() == 2 || (scene.bodies[i].box && scene.bodies[j].box);
+      const bool sized = scene.dimension() == 2 || !(scene.bodies[i].centre || scene.bodies[j].centre);
       reader.error(
           shape_key(scene.bodies[j], j),
           "overlaps body \"" + scene.bodies[i].name + "\"" +
@@ -137,8 +137,7 @@ void check_bodies(Reader& reader) {
     const std::string key = shape_key(body, i);
     const bool shaped = body.box || body.centre || !body.polygon.empty();
     if (shaped && !reader.failed(key) && !reader.failed("grid.space") && reader.given(key) &&
-        !(body.centre && reader.failed(body_key(i) + ".radius")) &&
-        !(scene.dimension() == 3 && !body.polygon.empty()))
+        !(body.centre && reader.failed(body_key(i) + ".radius")) && !reader.failed(body_key(i) + ".extrude"))
       sound[i] = (body.polygon.empty() || check_polygon(body, key, reader)) && check_place(body, key, reader);
     if (sound[i] && !reader.failed("grid") && !reader.failed(body_key(i) + ".particles_per_cell") &&
         !holds_a_particle(body, scene.grid, scene.dimension())) {

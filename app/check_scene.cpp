@@ -6,8 +6,10 @@
 
 #include "app/codecs.hpp"
 #include "app/columns.hpp"
+#include "app/digits.hpp"
 #include "app/geometry.hpp"
 #include "coupling/quantities.hpp"
+#include "mpm/plane_patch.hpp"
 
 namespace polder::app {
 namespace {
@@ -64,7 +66,7 @@ void check_segment(const Boundary& b, const std::string& key, Reader& reader) {
   const Scene& scene = reader.scene;
   const auto& [from, to] = *b.segment;
   if (scene.dimension() == 3 && !b.side) {
-    reader.error(key, "segments in a 3d grid are not in this version", "a side of the grid");
+    reader.error(key, "from and to span no surface inside a 3d grid", "a side; or { polygon = [...] }");
     return;
   }
   if (from == to) {
@@ -99,6 +101,55 @@ void check_column(const coupling::Measure& m, std::size_t i, Reader& reader) {
                  join(names));
 }
 
+// A polygon in space: plane, simple, inside the grid.
+void check_patch(const Boundary& b, const std::string& key, Reader& reader) {
+  const Scene& scene = reader.scene;
+  const std::vector<Vector3>& p = b.polygon;
+  for (std::size_t i = 0; i < p.size(); ++i)
+    if (p[i] == p[(i + 1) % p.size()]) {
+      reader.error(key,
+                   i + 1 < p.size()
+                       ? "points " + std::to_string(i + 1) + " and " + std::to_string(i + 2) + " are the same"
+                       : "the last point repeats the first",
+                   "each corner once");
+      return;
+    }
+  double span = 0;
+  for (const Vector3& x : p)
+    span = std::max(span, std::hypot(x[0] - p[0][0], x[1] - p[0][1], x[2] - p[0][2]));
+  const Vector3 area = mpm::vector_area(p);
+  if (std::hypot(area[0], area[1], area[2]) <= 1e-12 * span * span) {
+    reader.error(key, "the corners enclose no area", "corners in order around a surface");
+    return;
+  }
+  const mpm::PlanePatch patch(p);
+  for (std::size_t i = 0; i < p.size(); ++i)
+    if (std::abs(patch.height(p[i])) > 1e-6 * span) {
+      reader.error(key,
+                   "the corners do not lie in one plane: point " + std::to_string(i + 1) + " is " +
+                       digits(std::abs(patch.height(p[i])), 3) + " m off",
+                   "a plane polygon; a curved surface in several");
+      return;
+    }
+  Polygon plane;
+  for (const Point<2>& x : patch.corners()) plane.push_back({x[0], x[1], 0});
+  if (const auto crossing = crossing_edges(plane)) {
+    const auto edge = [&](std::size_t i) {
+      return std::to_string(i + 1) + "-" + std::to_string((i + 1) % p.size() + 1);
+    };
+    reader.error(key,
+                 "the edges " + edge(crossing->first) + " and " + edge(crossing->second) + " cross or touch",
+                 "a polygon whose edges meet at its corners only");
+    return;
+  }
+  if (reader.failed("grid")) return;
+  for (const Vector3& x : p) {
+    if (is_in_grid(scene, x)) continue;
+    reader.error(key, point_text(x, 3) + " lies outside the grid", "points of the grid");
+    return;
+  }
+}
+
 }  // namespace
 
 void check_names(Reader& reader) {
@@ -118,12 +169,14 @@ void check_boundaries(Reader& reader) {
     const std::string key = item_key("boundary", i) + ".where";
     if (reader.failed(key) || !reader.given(key)) continue;
     if (b.segment) check_segment(b, key, reader);
-    if (is_load(b.kind) && scene.dimension() == 3)
-      reader.error(item_key("boundary", i) + ".kind", "loads in a 3d grid are not in this version",
-                   "fixed, roller, friction, velocity, free");
-    else if (is_load(b.kind) && !b.segment)
+    if (!b.polygon.empty()) check_patch(b, key + ".polygon", reader);
+    const bool space = scene.dimension() == 3;
+    if (is_load(b.kind) && (space ? b.polygon.empty() : !b.segment))
       reader.error(key, "a load needs the part of the soil's surface it acts on",
-                   "{ from = [x, y], to = [x, y] }");
+                   space ? "{ polygon = [[x, y, z], ...] }" : "{ from = [x, y], to = [x, y] }");
+    if (b.kind == Boundary::Kind::free && !b.side && !reader.failed(item_key("boundary", i) + ".kind"))
+      reader.error(key, "inside the grid nothing holds the soil that could be set free",
+                   "a side; or side, from and to");
     if (!b.side || b.segment || is_load(b.kind)) continue;
     const auto [first, is_new] = whole_side.emplace(*b.side, i);
     if (!is_new)

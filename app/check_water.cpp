@@ -59,11 +59,6 @@ void check_phreatic_line(Reader& reader) {
   const auto& line = scene.water.phreatic;
   const std::string key = "pore_water.phreatic";
   if (line.empty() || reader.failed(key)) return;
-  if (scene.dimension() == 3) {
-    reader.error(key, "a phreatic line in a 3d grid is not in this version",
-                 "a 2D grid; or soil saturated everywhere");
-    return;
-  }
   for (std::size_t i = 1; i < line.size(); ++i)
     if (!(line[i][0] > line[i - 1][0])) {
       reader.error(
@@ -76,7 +71,7 @@ void check_phreatic_line(Reader& reader) {
     reader.error(key, "a phreatic line without gravity", "gravity; or no phreatic line");
   if (!bodies_are_sound(reader)) return;
   for (const Body* body : porous_bodies(reader)) {
-    const Extent e = extent(*body, 2);
+    const Extent e = extent(*body, scene.dimension());
     const double tolerance = 1e-9 * scene.grid.cell;
     if (e.lower[0] >= line.front()[0] - tolerance && e.upper[0] <= line.back()[0] + tolerance) continue;
     reader.error(
@@ -116,12 +111,24 @@ bool touches(const Body& body, const Scene& scene, int side, const Extent& part)
     const double face = side % 2 ? e.upper[axis] : e.lower[axis];
     return body.box && std::abs(face - at) <= tolerance && overlaps(e.lower, e.upper);
   }
+  const Extent e = extent(body, scene.dimension());
+  if (dimension == 3 && axis == 1) {  // an end of a prism
+    const double end = side % 2 ? e.upper[1] : e.lower[1];
+    const Polygon window{{part.lower[0], part.lower[2], 0},
+                         {part.upper[0], part.lower[2], 0},
+                         {part.upper[0], part.upper[2], 0},
+                         {part.lower[0], part.upper[2], 0}};
+    return std::abs(end - at) <= tolerance &&
+           overlap_area(body.polygon, window) > tolerance * scene.grid.cell;
+  }
+  const std::size_t across = axis == 0 ? 0 : 1;  // in the plane of the polygon
   for (std::size_t i = 0; i < body.polygon.size(); ++i) {
     const Vector3 &a = body.polygon[i], &b = body.polygon[(i + 1) % body.polygon.size()];
-    if (std::abs(a[axis] - at) > tolerance || std::abs(b[axis] - at) > tolerance) continue;
-    const std::size_t along = 1 - axis;
-    Vector3 lower = a, upper = b;
-    if (lower[along] > upper[along]) std::swap(lower, upper);
+    if (std::abs(a[across] - at) > tolerance || std::abs(b[across] - at) > tolerance) continue;
+    Vector3 lower = e.lower, upper = e.upper;
+    const std::size_t along = across == 1 ? 0 : dimension - 1;
+    lower[along] = std::min(a[1 - across], b[1 - across]);
+    upper[along] = std::max(a[1 - across], b[1 - across]);
     if (overlaps(lower, upper)) return true;
   }
   return false;

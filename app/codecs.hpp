@@ -42,8 +42,10 @@ Codec<std::vector<std::string>> words(const std::vector<std::string>& words);
 Codec<std::vector<double>> numbers(const Dimension& dimension, const Range& range = {});
 
 Codec<coupling::Vector3> vector(const Dimension& dimension);         // as many components as the space has
-Codec<std::vector<coupling::Vector3>> points(std::size_t at_least);  // list of [x, y]
-Codec<std::array<coupling::Vector3, 2>> box();                       // [lower corner, upper corner]
+Codec<std::vector<coupling::Vector3>> points(std::size_t at_least);  // list of [x, y], in 3D [x, y, z]
+// List of [x, y]; in 3D of [x, z], a section across y.
+Codec<std::vector<coupling::Vector3>> section_points(std::size_t at_least);
+Codec<std::array<coupling::Vector3, 2>> box();  // [lower corner, upper corner]
 
 // A number, or { time = [...], value = [...] }.
 Codec<coupling::TimeTable> time_table(const Dimension& dimension, const Range& range = {});
@@ -55,12 +57,15 @@ Codec<Components> components(const Dimension& dimension);
 // { strain = [...], value = [...] }: piecewise linear.
 Codec<mpm::Mobilised> mobilised(const Dimension& dimension, const Range& range = {});
 
-// "left", { side = "left", from = [..], to = [..] } or { from = [..], to = [..] }.
+// "left", { side = "left", from = [..], to = [..] }, in 2D { from = [..], to = [..] }, in 3D
+// { polygon = [..] }.
 struct Place {
   std::optional<int> side;  // 2 * axis + (0 lower, 1 upper)
   std::optional<std::array<coupling::Vector3, 2>> segment;
+  std::vector<coupling::Vector3> polygon;  // plane, in 3D
 };
-Codec<Place> place();
+// inner: also places inside the grid.
+Codec<Place> place(bool inner);
 std::string side_name(int side, int dimension);
 
 template <class E>

@@ -342,10 +342,42 @@ Codec<Vector3> vector(const Dimension& dimension) {
   return c;
 }
 
-Codec<std::vector<Vector3>> points(std::size_t at_least) {
-  const Codec<Vector3> one = vector(dimension::kLength);
+namespace {
+
+// [x, y]; in 3D [x, z], a point of the section across y.
+Codec<Vector3> section_point() {
+  const Codec<double> one = number(dimension::kLength);
+  Codec<Vector3> c;
+  c.schema = schema_type("array");
+  c.schema.set("items", one.schema);
+  c.schema.set("minItems", Node::of(2));
+  c.schema.set("maxItems", Node::of(2));
+  c.read = [one](const Node& n, const std::string& key, Vector3& v, Reader& reader) {
+    const std::string expected = reader.dimension() == 3 ? "[x, z]" : "[x, y]";
+    if (!n.is(Node::Kind::array) || n.items.size() != 2) {
+      reader.error(
+          key, "expected " + expected + ", found " + n.description(),
+          reader.dimension() == 3 ? "two coordinates: a section across y" : "two coordinates in a 2D grid");
+      return false;
+    }
+    Vector3 read{};
+    std::size_t i = 0;
+    const bool good = read_list(n, key, expected, reader, [&](const Node& item, const std::string& k) {
+      return one.read(item, k, read[i++], reader);
+    });
+    v = read;
+    return good;
+  };
+  c.write = [one](const Vector3& v, const Scene& scene) {
+    return Node::array({one.write(v[0], scene), one.write(v[1], scene)});
+  };
+  return c;
+}
+
+Codec<std::vector<Vector3>> list_of_points(const Codec<Vector3>& one, std::string type,
+                                           std::size_t at_least) {
   Codec<std::vector<Vector3>> c;
-  c.type = "list of points [[x, y], ...] [m]";
+  c.type = std::move(type);
   c.allowed = "at least " + std::to_string(at_least) + " points";
   c.schema = schema_type("array");
   c.schema.set("items", one.schema);
@@ -373,6 +405,17 @@ Codec<std::vector<Vector3>> points(std::size_t at_least) {
     return n;
   };
   return c;
+}
+
+}  // namespace
+
+Codec<std::vector<Vector3>> points(std::size_t at_least) {
+  return list_of_points(vector(dimension::kLength),
+                        "list of points [[x, y], ...], in 3D [[x, y, z], ...] [m]", at_least);
+}
+
+Codec<std::vector<Vector3>> section_points(std::size_t at_least) {
+  return list_of_points(section_point(), "list of points [[x, y], ...], in 3D [[x, z], ...] [m]", at_least);
 }
 
 }  // namespace polder::app

@@ -277,17 +277,22 @@ std::string side_name(int side, int dimension) {
   return (dimension == 3 ? kSpace : kPlane)[side];
 }
 
-Codec<Place> place() {
+Codec<Place> place(bool inner) {
   const Codec<Vector3> point = vector(dimension::kLength);
+  const Codec<std::vector<Vector3>> corners = points(3);
   Node side = Node::table();
   Node names = Node::array();
   for (const std::string& s : side_names(3)) names.items.push_back(Node::of(s));
   side.set("enum", std::move(names));
   Codec<Place> c;
-  c.type = "side of the grid, { side, from, to } for a part of it, or { from, to } for a segment inside (2D)";
+  c.type = "side of the grid, { side, from, to } for a part of it";
+  if (inner)
+    c.type += ", { from, to } for a segment inside (2D), { polygon } for a plane polygon inside (3D)";
   c.allowed = "left, right, bottom, top; in 3D also front, back";
-  c.schema =
-      any_of({side, object_schema({{"side", side}, {"from", point.schema}, {"to", point.schema}}, {})});
+  std::vector<std::pair<std::string, Node>> keys{
+      {"side", side}, {"from", point.schema}, {"to", point.schema}};
+  if (inner) keys.emplace_back("polygon", corners.schema);
+  c.schema = any_of({side, object_schema(keys, {})});
   c.read = [=](const Node& n, const std::string& key, Place& p, Reader& reader) {
     const int dimension = reader.dimension();
     const auto read_side = [&](const Node& s, const std::string& k) {
@@ -304,8 +309,21 @@ Codec<Place> place() {
       return true;
     };
     if (!n.is(Node::Kind::table)) return read_side(n, key);
-    if (!check_keys(n, key, {"side", "from", "to"}, reader)) return false;
+    std::vector<std::string> names{"side", "from", "to"};
+    if (inner) names.push_back("polygon");
+    if (!check_keys(n, key, names, reader)) return false;
     bool good = true;
+    if (const Node* polygon = n.find("polygon")) {
+      if (n.members.size() > 1) {
+        reader.error(key, "a polygon stands alone", "{ polygon = [...] }; or side, from and to");
+        return false;
+      }
+      if (dimension == 2) {
+        reader.error(key + ".polygon", "a polygon is a surface in a 3d grid", "from and to");
+        return false;
+      }
+      return corners.read(*polygon, key + ".polygon", p.polygon, reader);
+    }
     const Node *s = n.find("side"), *from = n.find("from"), *to = n.find("to");
     if (s) good = read_side(*s, key + ".side");
     if ((from != nullptr) != (to != nullptr) || (!s && !from)) {
@@ -323,7 +341,7 @@ Codec<Place> place() {
     }
     return good;
   };
-  c.write = [point](const Place& p, const Scene& scene) {
+  c.write = [point, corners](const Place& p, const Scene& scene) {
     if (p.side && !p.segment) return Node::of(side_name(*p.side, scene.dimension()));
     Node n = Node::inline_table();
     if (p.side) n.set("side", Node::of(side_name(*p.side, scene.dimension())));
@@ -331,6 +349,7 @@ Codec<Place> place() {
       n.set("from", point.write((*p.segment)[0], scene));
       n.set("to", point.write((*p.segment)[1], scene));
     }
+    if (!p.polygon.empty()) n.set("polygon", corners.write(p.polygon, scene));
     return n;
   };
   return c;

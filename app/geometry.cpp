@@ -74,6 +74,11 @@ bool is_inside(const Polygon& p, double x, double y) {
   return false;
 }
 
+// Where a prism begins and ends along y.
+std::array<double, 2> depth_of(const Body& body) {
+  return body.extrude.value_or(std::array<double, 2>{});
+}
+
 // Whether a position of a lattice start + (i + 1/2) spacing lies in [from, to].
 bool lattice_hits(double start, double spacing, double from, double to) {
   const double first = std::ceil((from - start) / spacing - 0.5);
@@ -133,10 +138,11 @@ double distance(const Polygon& p, double x, double y) {
   return nearest;
 }
 
-Polygon outline(const Body& body) {
+Polygon outline(const Body& body, int dimension) {
   if (body.box) {
     const auto& [l, u] = *body.box;
-    return {{l[0], l[1], 0}, {u[0], l[1], 0}, {u[0], u[1], 0}, {l[0], u[1], 0}};
+    const auto up = static_cast<std::size_t>(dimension) - 1;
+    return {{l[0], l[up], 0}, {u[0], l[up], 0}, {u[0], u[up], 0}, {l[0], u[up], 0}};
   }
   if (!body.centre) return body.polygon;
   Polygon p;
@@ -146,6 +152,16 @@ Polygon outline(const Body& body) {
                  (*body.centre)[1] + body.radius * std::sin(angle), 0});
   }
   return p;
+}
+
+Extent extent_of(const Polygon& polygon) {
+  Extent e{polygon.front(), polygon.front()};
+  for (const Vector3& v : polygon)
+    for (std::size_t i = 0; i < 2; ++i) {
+      e.lower[i] = std::min(e.lower[i], v[i]);
+      e.upper[i] = std::max(e.upper[i], v[i]);
+    }
+  return e;
 }
 
 Extent extent(const Body& body, int dimension) {
@@ -159,13 +175,10 @@ Extent extent(const Body& body, int dimension) {
     }
     return e;
   }
-  e.lower = e.upper = body.polygon.front();
-  for (const Vector3& v : body.polygon)
-    for (std::size_t i = 0; i < axes; ++i) {
-      e.lower[i] = std::min(e.lower[i], v[i]);
-      e.upper[i] = std::max(e.upper[i], v[i]);
-    }
-  return e;
+  e = extent_of(body.polygon);
+  if (dimension == 2) return e;
+  const auto [begin, end] = depth_of(body);
+  return {{e.lower[0], begin, e.lower[1]}, {e.upper[0], end, e.upper[1]}};
 }
 
 double measure(const Body& body, int dimension) {
@@ -178,7 +191,8 @@ double measure(const Body& body, int dimension) {
   if (body.centre)
     return dimension == 3 ? 4.0 / 3.0 * std::numbers::pi * std::pow(body.radius, 3)
                           : std::numbers::pi * body.radius * body.radius;
-  return std::abs(signed_area(body.polygon));
+  const auto [begin, end] = depth_of(body);
+  return std::abs(signed_area(body.polygon)) * (dimension == 3 ? end - begin : 1);
 }
 
 double overlap(const Body& a, const Body& b, int dimension) {
@@ -191,9 +205,13 @@ double overlap(const Body& a, const Body& b, int dimension) {
   }
   if (dimension == 2) {
     if (a.centre && b.centre && length(*a.centre, *b.centre) >= a.radius + b.radius) return 0;
-    return overlap_area(outline(a), outline(b));
+    return overlap_area(outline(a, 2), outline(b, 2));
   }
   if (a.box && b.box) return common;
+  if (!a.centre && !b.centre) {
+    const double shared = std::min(ea.upper[1], eb.upper[1]) - std::max(ea.lower[1], eb.lower[1]);
+    return shared * overlap_area(outline(a, 3), outline(b, 3));
+  }
   const Body& ball = a.centre ? a : b;
   const Body& other = a.centre ? b : a;
   return distance(other, *ball.centre, dimension) < ball.radius ? 1 : 0;
@@ -213,7 +231,10 @@ double distance(const Body& body, const Vector3& point, int dimension) {
     }
     return body.centre ? std::max(0.0, std::sqrt(square) - body.radius) : std::sqrt(square);
   }
-  return distance(body.polygon, point[0], point[1]);
+  if (dimension == 2) return distance(body.polygon, point[0], point[1]);
+  const auto [begin, end] = depth_of(body);
+  return std::hypot(distance(body.polygon, point[0], point[2]),
+                    std::max({0.0, begin - point[1], point[1] - end}));
 }
 
 bool holds_a_particle(const Body& body, const coupling::GridSpec& grid, int dimension) {
@@ -255,7 +276,8 @@ bool holds_a_particle(const Body& body, const coupling::GridSpec& grid, int dime
       return half > 0 &&
              lattice_hits(grid.origin[0], spacing, (*body.centre)[0] - half, (*body.centre)[0] + half);
     });
-  return rows(1, [&](double y) {
+  // A prism is filled along its length from end to end: one particle at least.
+  return rows(static_cast<std::size_t>(dimension) - 1, [&](double y) {
     const std::vector<double> c = crossings(body.polygon, y);
     for (std::size_t i = 0; i + 1 < c.size(); i += 2)
       if (lattice_hits(grid.origin[0], spacing, c[i], c[i + 1])) return true;

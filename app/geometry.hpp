@@ -26,19 +26,20 @@ double overlap_area(const Polygon& a, const Polygon& b);
 // Distance of a point from a polygon; 0 inside.
 double distance(const Polygon& polygon, double x, double y);
 
-// The outline of a plane body; a disk becomes an inscribed polygon of 128 corners.
-Polygon outline(const coupling::Body& body);
+// The outline of a plane body, in 3D the section (x, z) of a box or prism; a disk becomes an inscribed
+// polygon of 128 corners.
+Polygon outline(const coupling::Body& body, int dimension);
 
 struct Extent {
   coupling::Vector3 lower{}, upper{};
 };
+Extent extent_of(const Polygon& polygon);
 Extent extent(const coupling::Body& body, int dimension);
 
 // Area in 2D (also axisymmetric), volume in 3D.
 double measure(const coupling::Body& body, int dimension);
 
-// Shared area or volume of two bodies; in 3D of two balls or a ball and a box only whether there is any (1 or
-// 0).
+// Shared area or volume of two bodies; in 3D of a ball and another body only whether there is any (1 or 0).
 double overlap(const coupling::Body& a, const coupling::Body& b, int dimension);
 
 // Distance of a point from a body; 0 inside.

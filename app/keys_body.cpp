@@ -158,6 +158,36 @@ Codec<int> particles_per_cell() {
   return c;
 }
 
+// Where a prism begins and ends along y.
+Codec<std::array<double, 2>> depth_range() {
+  const Codec<double> one = number(dimension::kLength);
+  Codec<std::array<double, 2>> c;
+  c.type = "[y0, y1], each a " + one.type;
+  c.schema = Node::table();
+  c.schema.set("type", Node::of("array"));
+  c.schema.set("items", one.schema);
+  c.schema.set("minItems", Node::of(2));
+  c.schema.set("maxItems", Node::of(2));
+  c.read = [one](const Node& n, const std::string& key, std::array<double, 2>& range, Reader& reader) {
+    if (!n.is(Node::Kind::array) || n.items.size() != 2) {
+      reader.error(key, "expected [y0, y1], found " + n.description(), "the lower and the upper end along y");
+      return false;
+    }
+    std::size_t i = 0;
+    if (!read_list(n, key, "[y0, y1]", reader, [&](const Node& item, const std::string& k) {
+          return one.read(item, k, range[i++], reader);
+        }))
+      return false;
+    if (range[1] > range[0]) return true;
+    reader.error(key, "empty body: y1 is not beyond y0", "[y0, y1]");
+    return false;
+  };
+  c.write = [one](const std::array<double, 2>& range, const Scene& scene) {
+    return Node::array({one.write(range[0], scene), one.write(range[1], scene)});
+  };
+  return c;
+}
+
 // Exactly one shape, complete, and one the space has.
 void check_shape(Body& body, const std::string& path, Reader& reader) {
   const auto given = [&](const char* name) { return reader.given(key_path(path, name)); };
@@ -169,9 +199,13 @@ void check_shape(Body& body, const std::string& path, Reader& reader) {
   if (round && !given("radius"))
     reader.error(key_path(path, "radius"), "missing", "the radius that belongs to centre");
   const int dimension = reader.dimension();
-  if (dimension == 3 && given("polygon"))
-    reader.error(key_path(path, "polygon"), "a polygon has no volume in a 3d grid",
-                 "box; or centre and radius");
+  if (dimension == 2 && given("extrude"))
+    reader.error(key_path(path, "extrude"), "a body has no depth in a 2D grid", "polygon alone");
+  if (dimension == 3 && given("polygon") && !body.extrude && !reader.failed("grid") &&
+      !reader.failed(key_path(path, "extrude"))) {
+    const coupling::GridSpec& grid = reader.scene.grid;
+    body.extrude = {grid.origin[1], grid.origin[1] + grid.size[1]};
+  }
   if (dimension == 3 && body.spin != 0)
     reader.error(key_path(path, "spin"), "not in this version for a 3d grid", "velocity");
   if (reader.scene.grid.space == Space::axisymmetric && (body.spin != 0 || body.velocity[0] != 0))
@@ -186,8 +220,12 @@ const Table<Body>& body_keys() {
     Table<Body> t;
     t.add("name", identifier(), &Body::name, "Name in messages and results; default: body-1, body-2, ...");
     t.add("material", material_reference(), &Body::material, "The material it consists of.").required();
-    t.add("polygon", points(3), &Body::polygon,
-          "Corners of a plane body, in either sense; not closed by repeating the first.");
+    t.add("polygon", section_points(3), &Body::polygon,
+          "Corners of a plane body, in either sense; not closed by repeating the first. In 3D the section of "
+          "a prism along y.");
+    t.add("extrude", depth_range(), &Body::extrude,
+          "Where the prism begins and ends along y (3D); default: the whole depth of the grid.")
+        .only_with("polygon", "polygon", [](const Body& b) { return !b.polygon.empty(); });
     t.add("box", box(), &Body::box, "Lower and upper corner of a box.");
     t.add("centre", vector(dimension::kLength), &Body::centre, "Centre of a disk, in 3D of a ball.");
     t.add("radius", number(dimension::kLength, kPositive), &Body::radius, "Radius of the disk or ball.")
@@ -217,15 +255,17 @@ const Table<Boundary>& boundary_keys() {
     t.add("name", identifier(), &B::name,
           "Name in messages and results; default: boundary-1, boundary-2, ...");
     t.add<Place>(
-         "where", place(),
+         "where", place(true),
          [](const B& b) {
-           return Place{b.side, b.segment};
+           return Place{b.side, b.segment, b.polygon};
          },
          [](B& b, Place p) {
            b.side = p.side;
            b.segment = p.segment;
+           b.polygon = std::move(p.polygon);
          },
-         "Where it acts. On a segment inside the grid the soil lies to the left, seen from `from` to `to`.")
+         "Where it acts. On a segment inside the grid the soil lies to the left, seen from `from` to `to`; "
+         "the corners of a polygon run counter-clockwise seen from the soil.")
         .required();
     t.add("kind",
           choice<Kind>({{"fixed", Kind::fixed},
@@ -282,9 +322,9 @@ const Table<WaterBoundary>& water_keys() {
     Table<W> t;
     t.add("name", identifier(), &W::name, "Name in messages and results; default: water-1, water-2, ...");
     t.add<Place>(
-         "where", place(),
+         "where", place(false),
          [](const W& w) {
-           Place p{w.side, std::nullopt};
+           Place p{w.side, std::nullopt, {}};
            if (w.from && w.to) p.segment = {*w.from, *w.to};
            return p;
          },

@@ -195,8 +195,9 @@ const Table<WaterSpec>& pore_water_keys() {
           "Bulk modulus of the water; inf: incompressible.");
     t.add("viscosity", number(dimension::kViscosity, kPositive), &W::viscosity,
           "Dynamic viscosity; turns intrinsic permeability into hydraulic conductivity.");
-    t.add("phreatic", points(2), &W::phreatic,
-          "Phreatic line, from left to right; the soil below it is saturated. Without it all soil is.");
+    t.add("phreatic", section_points(2), &W::phreatic,
+          "Phreatic line, from left to right; the soil below it is saturated. Without it all soil is. In 3D "
+          "it is the same at every y.");
     t.add("saturation_above", number(dimension::kNone, {.min = 0, .max = 1}), &W::saturation_above,
           "Degree of saturation of the soil above the phreatic line.")
         .only_with("phreatic", "phreatic", with_line);

@@ -79,6 +79,34 @@ TEST_CASE("overlap of disks, balls and boxes") {
   CHECK(overlap(ball(0, 0, 0, 1.8), box, 3) > 0);
 }
 
+TEST_CASE("prisms: volume, extent, overlap, distance") {
+  Body prism;  // right triangle in x and z, along y
+  prism.polygon = {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}};
+  prism.extrude = {1, 4};
+  CHECK(measure(prism, 3) == doctest::Approx(3));
+  CHECK(measure(prism, 2) == doctest::Approx(1));
+  const Extent e = extent(prism, 3);
+  CHECK(e.lower == coupling::Vector3{0, 1, 0});
+  CHECK(e.upper == coupling::Vector3{2, 4, 1});
+  Body box;
+  box.box = {{{1, 3, 0}, {3, 6, 1}}};
+  CHECK(overlap(prism, box, 3) == doctest::Approx(0.25));  // triangle of 1 by 0.5, 1 m long
+  box.box = {{{1.5, 0, 0.5}, {3, 6, 1}}};                  // beyond the slope, though the extents meet
+  CHECK(overlap(prism, box, 3) == 0);
+  Body other = prism;
+  other.extrude = {3.5, 5};
+  CHECK(overlap(prism, other, 3) == doctest::Approx(0.5));
+  other.extrude = {4, 5};
+  CHECK(overlap(prism, other, 3) == 0);
+  CHECK(distance(prism, {0.5, 2, 0.5}, 3) == 0);
+  CHECK(distance(prism, {-3, 5, 4}, 3) == doctest::Approx(std::sqrt(9 + 1 + 9)));
+  CHECK(overlap(ball(0.5, 0.5, 0.2, 0.4), prism, 3) == 0);
+  CHECK(overlap(ball(0.5, 0.5, 0.2, 0.6), prism, 3) > 0);
+  CHECK(holds_a_particle(prism, grid(0.1), 3));
+  prism.polygon = {{0.06, 0, 0}, {0.07, 0, 0}, {0.07, 5, 0}, {0.06, 5, 0}};
+  CHECK_FALSE(holds_a_particle(prism, grid(0.1), 3));
+}
+
 TEST_CASE("bodies between the particle positions hold none") {
   Body sliver;
   sliver.polygon = {
