@@ -112,7 +112,8 @@ const std::vector<Command>& commands() {
        "[CASE...]",
        0,
        kAnyNumber,
-       "Run cases and compare them with their expectations; without CASE those in the folder cases but the "
+       "Run cases, or all of a folder, and compare them with their expectations; without CASE those in the "
+       "folder cases but the "
        "extensive ones.",
        {folder_option("results/verify"),
         set_option(),

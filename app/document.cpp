@@ -112,6 +112,15 @@ std::string item_names(const Node& list) {
   return text;
 }
 
+// A case file that may be meant where a folder was given.
+std::filesystem::path case_in(const std::filesystem::path& folder) {
+  std::error_code failure;
+  std::vector<std::filesystem::path> found;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, failure))
+    if (entry.path().extension() == ".toml") found.push_back(entry.path());
+  return found.empty() ? folder / "case.toml" : *std::min_element(found.begin(), found.end());
+}
+
 }  // namespace
 
 Node parse_toml(const std::string& text, const std::string& file, std::vector<Diagnostic>& diagnostics) {
@@ -129,8 +138,7 @@ std::string read_text_file(const std::string& path) {
   const auto status = std::filesystem::status(path, failure);
   if (!std::filesystem::exists(status)) throw InputError(path + ": no such file");
   if (std::filesystem::is_directory(status))
-    throw InputError(path + ": is a folder; allowed: a case file, such as " +
-                     (std::filesystem::path(path) / "case.toml").string());
+    throw InputError(path + ": is a folder; allowed: a case file, such as " + case_in(path).string());
   const auto size = std::filesystem::file_size(path, failure);
   if (!failure && size > kMaxFileSize)
     throw InputError(path + ": " + std::to_string(size >> 20) + " MiB; allowed: at most 16 MiB");

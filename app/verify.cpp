@@ -27,23 +27,48 @@ struct Verdict {
   }
 };
 
-// cases/NAME/*.toml of the present folder that expect something and take no more than this effort.
-std::vector<std::string> cases_with_expectations(coupling::Effort most) {
+// The case files of a folder that expect something and take no more than this effort.
+std::vector<std::string> cases_in(const fs::path& folder, coupling::Effort most) {
+  std::vector<std::string> list;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() != ".toml") continue;
+    const coupling::Scene scene = read_case(entry.path().string());
+    if (!scene.expectations.empty() && scene.effort <= most) list.push_back(entry.path().string());
+  }
+  std::sort(list.begin(), list.end());
+  return list;
+}
+
+// cases/NAME/*.toml of the present folder.
+std::vector<std::string> all_cases(coupling::Effort most) {
   std::vector<std::string> list;
   std::error_code failure;
   for (const fs::directory_entry& folder : fs::directory_iterator("cases", failure)) {
     if (!folder.is_directory(failure)) continue;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder.path())) {
-      if (entry.path().extension() != ".toml") continue;
-      const coupling::Scene scene = read_case(entry.path().string());
-      if (!scene.expectations.empty() && scene.effort <= most) list.push_back(entry.path().string());
-    }
+    const std::vector<std::string> found = cases_in(folder.path(), most);
+    list.insert(list.end(), found.begin(), found.end());
   }
   if (list.empty())
     throw InputError(
         "polder verify: no case with [[expect]] in the folder cases here; allowed: polder verify CASE..., or "
         "another folder");
   std::sort(list.begin(), list.end());
+  return list;
+}
+
+// A folder stands for the cases in it.
+std::vector<std::string> named_cases(const std::vector<std::string>& words) {
+  std::vector<std::string> list;
+  for (const std::string& word : words) {
+    std::error_code failure;
+    if (!fs::is_directory(word, failure)) {
+      list.push_back(word);
+      continue;
+    }
+    const std::vector<std::string> found = cases_in(word, coupling::Effort::extensive);
+    if (found.empty()) throw InputError("polder verify: " + word + ": holds no case with [[expect]]");
+    list.insert(list.end(), found.begin(), found.end());
+  }
   return list;
 }
 
@@ -153,11 +178,11 @@ int verify_command(const Arguments& a, std::ostream& out, std::ostream& err) {
     throw InputError(
         "polder verify: --all and --quick choose among the cases in the folder cases; allowed: "
         "without CASE");
-  const std::vector<std::string> files =
-      !a.words.empty() ? a.words
-                       : cases_with_expectations(a.has("--all")     ? coupling::Effort::extensive
-                                                 : a.has("--quick") ? coupling::Effort::quick
-                                                                    : coupling::Effort::normal);
+  const std::vector<std::string> files = !a.words.empty()
+                                             ? named_cases(a.words)
+                                             : all_cases(a.has("--all")     ? coupling::Effort::extensive
+                                                         : a.has("--quick") ? coupling::Effort::quick
+                                                                            : coupling::Effort::normal);
   // All are read before the first one runs: a mistake in the last should not show after hours.
   std::vector<Diagnostic> wrong;
   for (const std::string& file : files) {

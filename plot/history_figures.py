@@ -49,13 +49,13 @@ def draw_lines(axis, time, table, columns, title, logarithmic):
     negative = any(np.any(table[column] < 0) for column in columns)
     # What is exactly 0 is told by one line of the legend, it needs no curve.
     zero = [column for column in columns if not np.any(table[column] != 0)]
-    for column in [column for column in columns if column not in zero] or zero:
+    for number, column in enumerate([column for column in columns if column not in zero] or zero):
         name, values = readable(split_unit(column)[0]), table[column]
         if len(zero) == len(columns):
             name += " (exactly 0)"
         if logarithmic:
             values = np.where(values != 0, np.abs(values), np.nan)  # zero has no place on this axis
-        axis.plot(time, values, label=name)
+        axis.plot(time, values, "-" if number < len(style.CYCLE) else "--", label=name)  # colours come round
     if logarithmic:
         axis.set_yscale("log")
         axis.yaxis.set_major_locator(ticker.LogLocator(numticks=6))

@@ -181,9 +181,16 @@ TEST_CASE("verify chooses cases by their effort") {
   fs::current_path(scratch.path);
   const Result quick = polder_program({"verify", "--quick"}), normal = polder_program({"verify"}),
                all = polder_program({"verify", "--all"});
+  const Result folder = polder_program({"verify", "cases/long"}), empty = polder_program({"verify", "cases"});
+  const Result one = polder_program({"run", "cases/measures"});
   fs::current_path(here);
   CHECK(quick.out.find("of 1 case met") != std::string::npos);
   CHECK(normal.out.find("of 1 case met") != std::string::npos);
   CHECK(all.out.find("of 2 cases met") != std::string::npos);
   CHECK(all.code == 0);
+  CHECK(folder.out.find("of 1 case met") != std::string::npos);
+  CHECK(empty.code == 2);
+  CHECK(empty.err.find("cases: holds no case with [[expect]]") != std::string::npos);
+  CHECK(one.err ==
+        "cases/measures: is a folder; allowed: a case file, such as cases/measures/measures.toml\n");
 }
