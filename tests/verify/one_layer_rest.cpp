@@ -151,10 +151,10 @@ double checkerboard_left(const Choice& c, int steps) {
   return amplitude(state.arrays.at("pore_pressure")) / before;
 }
 
-Scene slump_scene(const Choice& c, double duration) {
+Scene slump_scene(const Choice& c, double duration, double poisson) {
   Scene s = wet_scene(c, 4, 1.6, duration);
   s.numerics.flip = 0.98;
-  s.materials = {elastic_soil(5e4, 0.3, 0.4, c.conductivity)};
+  s.materials = {elastic_soil(5e4, poisson, 0.4, c.conductivity)};
   s.bodies = {box(0, 0, 1, 1 + c.offset * c.cell, c)};
   s.water.initial = WaterSpec::Initial::zero;
   Boundary base;
@@ -166,8 +166,8 @@ Scene slump_scene(const Choice& c, double duration) {
   return s;
 }
 
-Slump slump(const Choice& c, double duration) {
-  Simulation sim(slump_scene(c, duration));
+Slump slump(const Choice& c, double duration, double poisson) {
+  Simulation sim(slump_scene(c, duration, poisson));
   Slump r;
   const auto volume = [](const Simulation& x) {
     double sum = 0;

@@ -43,7 +43,7 @@ struct Slump {
   double water_error = 0;           // of the water's mass [-]
   long steps = 0;
 };
-Scene slump_scene(const Choice& choice, double duration);
-Slump slump(const Choice& choice, double duration);
+Scene slump_scene(const Choice& choice, double duration, double poisson = 0.3);
+Slump slump(const Choice& choice, double duration, double poisson = 0.3);
 
 }  // namespace polder::verify
