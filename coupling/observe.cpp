@@ -6,6 +6,7 @@
 #include "core/error.hpp"
 #include "coupling/simulation_run.hpp"
 #include "mpm/point_stencil.hpp"
+#include "mpm/stress_recovery.hpp"
 
 namespace polder::coupling {
 namespace {
@@ -286,17 +287,26 @@ PointFrame Simulation::Run<D>::points(const std::vector<std::string>& fields) co
   for (const std::string& name : fields) {
     FieldView v;
     v.name = name;
-    v.components = name == "displacement" || name == "velocity" ? 3 : name == "effective_stress" ? 6 : 1;
+    const bool stress = name == "effective_stress" || name == "recovered_stress";
+    v.components = name == "displacement" || name == "velocity" ? 3 : stress ? 6 : 1;
     f.fields.push_back(std::move(v));
   }
   int number = 0;
+  const bool recover = std::find(fields.begin(), fields.end(), "recovered_stress") != fields.end();
   for (const auto& body : world->skeleton.bodies()) {
+    std::array<Reals, ParticleSet<D>::kStress> recovered;
+    if (recover) recovered = mpm::recover_stress<D>(world->skeleton.grid(), *body);
     for (int id = 0; id < body->count(); ++id) {
       const int p = body->find(id);
       for (int d = 0; d < 3; ++d) f.positions.push_back(d < D ? body->position[d < D ? d : 0][p] : 0.0);
       for (FieldView& v : f.fields) {
         if (v.name == "body") {
           v.values.push_back(number);
+          continue;
+        }
+        if (v.name == "recovered_stress") {
+          for (int k = 0; k < 6; ++k)
+            v.values.push_back(k < ParticleSet<D>::kStress ? recovered[static_cast<std::size_t>(k)][p] : 0.0);
           continue;
         }
         for (int c = 0; c < v.components; ++c)

@@ -30,6 +30,7 @@ const std::vector<Quantity>& frame_quantities() {
       {"displacement", "m"},
       {"velocity", "m/s"},
       {"effective_stress", "Pa"},
+      {"recovered_stress", "Pa"},
       {"pore_pressure", "Pa"},
       {"deviatoric_strain", "-"},
       {"mean_effective_stress", "Pa"},

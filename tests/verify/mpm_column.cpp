@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "mpm/stress_recovery.hpp"
+
 namespace polder::verify {
 namespace {
 
@@ -39,12 +41,16 @@ ColumnResult settle(const ColumnOptions& o) {
     int count = 0;
   };
   std::map<int, Mean> rows;
-  double top = 0, square = 0, mass = 0;
+  const auto recovered = recover_stress<D>(scene.skeleton.grid(), set);
+  double top = 0, square = 0, mass = 0, recovered_square = 0;
   for (int p = 0; p < set.slots(); ++p) {
     if (set.id[p] < 0) continue;
     const double y = set.initial_position[up][p];
     const double error = (set.stress[up][p] + kDensity * kGravity * (o.height - y)) / scale;
     square += error * error;
+    const double after = (recovered[up][p] + kDensity * kGravity * (o.height - y)) / scale;
+    recovered_square += after * after;
+    if (y < h) r.recovered_bottom = std::max(r.recovered_bottom, std::abs(after));
     mass += set.mass[p];
     if (std::abs(error) > std::abs(r.worst)) r.worst = error, r.where = y;
     if (y < h) r.bottom = std::max(r.bottom, std::abs(error));
@@ -53,6 +59,7 @@ ColumnResult settle(const ColumnOptions& o) {
     top = std::max(top, y);
   }
   r.rms = std::sqrt(square / set.count());
+  r.recovered_rms = std::sqrt(recovered_square / set.count());
   double cell_square = 0;
   for (const auto& [row, mean] : rows) cell_square += std::pow(mean.error / mean.count, 2);
   r.cell_rms = std::sqrt(cell_square / rows.size());

@@ -11,6 +11,8 @@ namespace polder::verify {
 
 struct ColumnResult {
   double rms = 0;               // of the error of sigma_yy over all points, as a share of rho g H
+  double recovered_rms = 0;     // of the stresses recovered from the means over cells
+  double recovered_bottom = 0;  // largest error of those in the lowest cell
   double cell_rms = 0;          // the same of the means over the points that started in one cell
   double worst = 0, where = 0;  // largest error of a point and its reference height [m]
   double bottom = 0;            // largest error of the points in the lowest cell

@@ -25,10 +25,11 @@ const char* name_of(ShapeKind s) {
 
 void column() {
   std::printf(
-      "| start | shape | cell average | h [m] | RMS, points | RMS, cell means | worst point | at height [m] "
+      "| start | shape | cell average | h [m] | RMS, points | RMS, recovered | RMS, cell means | worst point "
+      "| at height [m] "
       "| "
-      "lowest cell | settlement | base reaction | unbalanced | steps |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "lowest cell | recovered | settlement | base reaction | unbalanced | steps |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const bool exact : {false, true})
     for (const ShapeKind shape : {ShapeKind::gimp, ShapeKind::quadratic_bspline})
       for (const bool average : {false, true})
@@ -37,11 +38,12 @@ void column() {
           o.shape = shape, o.cell_average = average, o.spacing = h, o.from_exact_stress = exact;
           const ColumnResult r = settle_column(o);
           std::printf(
-              "| %s | %s | %s | %g | %.3f %% | %.3f %% | %.2f %% | %.3f | %.2f %% | %.1e | %.1e | %.1e | %ld "
+              "| %s | %s | %s | %g | %.3f %% | %.3f %% | %.3f %% | %.2f %% | %.3f | %.2f %% | %.2f %% | %.1e "
+              "| %.1e | %.1e | %ld "
               "|\n",
               exact ? "exact stress" : "no stress", name_of(shape), average ? "yes" : "no", h, 100 * r.rms,
-              100 * r.cell_rms, 100 * r.worst, r.where, 100 * r.bottom, r.settlement_error, r.reaction_error,
-              r.unbalanced, r.steps);
+              100 * r.recovered_rms, 100 * r.cell_rms, 100 * r.worst, r.where, 100 * r.bottom,
+              100 * r.recovered_bottom, r.settlement_error, r.reaction_error, r.unbalanced, r.steps);
         }
 }
 

@@ -165,6 +165,27 @@ TEST_CASE("a slice of a levee between the sides of the grid is the levee in plan
     }
 }
 
+TEST_CASE("frames hold the recovered stress, with the mean of the points' own") {
+  set_threads(1);
+  for (const bool space : {false, true}) {
+    Simulation s(levee(space, {false, true, mpm::ShapeKind::gimp, LockingCure::none, 1000}));
+    for (int i = 0; i < 50; ++i) s.step();
+    const PointFrame f = s.points({"recovered_stress", "effective_stress", "volume"});
+    double changed = 0;
+    for (std::size_t k = 0; k < 6; ++k) {
+      double own = 0, recovered = 0, scale = 0;
+      for (std::size_t i = 0; i < f.count(); ++i) {
+        const double v = f.fields[2].values[i], a = f.fields[1].values[6 * i + k];
+        const double b = f.fields[0].values[6 * i + k];
+        own += v * a, recovered += v * b, scale += v * std::abs(a);
+        changed = std::max(changed, std::abs(a - b));
+      }
+      CHECK(std::abs(own - recovered) <= 1e-12 * scale);
+    }
+    CHECK(changed > 10);
+  }
+}
+
 TEST_CASE("a slice between walls inside the grid, with the locking cure") {
   set_threads(1);
   const Difference walls = compare({true, false, mpm::ShapeKind::gimp, LockingCure::none, 1000});
