@@ -150,6 +150,30 @@ void check_patch(const Boundary& b, const std::string& key, Reader& reader) {
   }
 }
 
+// The unit of a measure, "-" or nothing where it has none.
+std::string unit_of(const coupling::Measure& m, const Scene& scene) {
+  using Kind = coupling::Measure::Kind;
+  for (const coupling::Quantity& q : m.kind == Kind::history ? coupling::history_quantities(scene)
+                                     : m.kind == Kind::cell || m.kind == Kind::cells
+                                         ? coupling::cell_quantities()
+                                         : coupling::particle_quantities())
+    if (q.name == m.quantity.substr(0, m.quantity.find('['))) return q.unit;
+  return "";
+}
+
+void check_units(const coupling::Measure& m, const std::string& expect, Reader& reader) {
+  const std::string unit = unit_of(m, reader.scene);
+  const Dimension due =
+      unit.empty() || unit == "-" ? dimension::kNone : parse_quantity("1 " + unit).dimension;
+  for (const char* name : {"value", "at_least", "at_most"}) {
+    const std::string key = expect + "." + name;
+    if (const auto given = reader.dimension_of(key); given && *given != due)
+      reader.error(key, "is " + dimension_phrase(*given) + ", the measure is " + dimension_phrase(due),
+                   due == dimension::kNone ? "a number"
+                                           : "a number in " + plain_unit(due) + ", or a text with a unit");
+  }
+}
+
 }  // namespace
 
 void check_names(Reader& reader) {
@@ -235,6 +259,8 @@ void check_measures(Reader& reader) {
                    "norm = \"l2\", \"max\" with a reference; "
                    "\"largest\", \"smallest\", \"magnitude\", \"mean\"");
     std::vector<std::string> stages;
+    if (measure != scene.measures.end() && !reader.failed(item_key("expect", i)))
+      check_units(*measure, item_key("expect", i), reader);
     bool known_stage = e.from_stage.empty();
     for (const auto& stage : scene.stages) {
       stages.push_back(stage.name);

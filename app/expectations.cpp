@@ -67,7 +67,7 @@ std::vector<ExpectationResult> compare_with_expectations(const coupling::Simulat
   std::vector<ExpectationResult> results;
   for (const Expectation& e : scene.expectations) {
     ExpectationResult r;
-    r.measure = e.measure, r.norm = e.norm, r.tolerance = e.has_bounds() ? 0 : e.tolerance;
+    r.measure = e.measure, r.norm = e.norm, r.tolerance = e.tolerance.value_or(0);
     const auto measure = std::find_if(scene.measures.begin(), scene.measures.end(),
                                       [&](const Measure& m) { return m.name == e.measure; });
     const bool at = measure->is_profile() || e.norm == "last";

@@ -24,6 +24,29 @@ std::vector<std::string> names_of(const std::vector<coupling::Quantity>& quantit
   return names;
 }
 
+// A number in SI units or a text with a unit, whose dimension is that of the measure (check_scene.cpp).
+Codec<double> of_the_measure() {
+  Codec<double> c = number(dimension::kNone);
+  Node with_unit = Node::table();
+  with_unit.set("type", Node::of("string"));
+  Node schema = Node::table();
+  schema.set("anyOf", Node::array({c.schema.find("anyOf")->items.front(), std::move(with_unit)}));
+  c.schema = std::move(schema);
+  c.type = "number in SI units, or with a unit of the measure";
+  c.read = [plain = c.read](const Node& n, const std::string& key, double& value, Reader& reader) {
+    if (n.is(Node::Kind::text)) {
+      const Quantity q = parse_quantity(n.text);
+      if (q.error.empty() && q.has_unit) {
+        value = q.value;
+        reader.note_dimension(key, q.dimension);
+        return true;
+      }
+    }
+    return plain(n, key, value, reader);
+  };
+  return c;
+}
+
 void check_quantity(Measure& m, const std::string& path, Reader& reader) {
   if (reader.failed(path)) return;
   if (m.is_profile()) {
@@ -95,6 +118,10 @@ void check_expectation(Expectation& e, const std::string& path, Reader& reader) 
     reader.error(key_path(path, "at_most"), "below at_least", "at least " + format_number(*e.at_least));
     return;
   }
+  const std::string tolerance = key_path(path, "tolerance");
+  if (e.has_bounds() && e.tolerance)
+    reader.error(tolerance, "does not apply here", "only with reference or value");
+  if (!e.has_bounds() && !e.tolerance) reader.error(tolerance, "missing", "number, greater than 0");
   if (!e.reference.empty()) {
     check_csv(e, path, reader);
     return;
@@ -166,10 +193,9 @@ const Table<Expectation>& expect_keys() {
           "CSV file of the expected curve, its path seen from the case file: values over time in its column "
           "`time`, `t` or the first; for a profile over the coordinate in the first.");
     t.add("column", text(), &E::column, "Column of the reference; default: its second.");
-    t.add("value", number(dimension::kNone), &E::value,
-          "Expected number, in SI units, instead of a reference.");
-    t.add("at_least", number(dimension::kNone), &E::at_least, "Lower bound instead, in SI units.");
-    t.add("at_most", number(dimension::kNone), &E::at_most, "Upper bound instead, in SI units.");
+    t.add("value", of_the_measure(), &E::value, "Expected number instead of a reference.");
+    t.add("at_least", of_the_measure(), &E::at_least, "Lower bound instead.");
+    t.add("at_most", of_the_measure(), &E::at_most, "Upper bound instead.");
     t.add(
         "norm", word({"l2", "max", "last", "largest", "smallest", "magnitude", "mean", "change"}), &E::norm,
         "l2, max: norm of the difference of two curves, of a profile over its points; one number of the "
@@ -182,11 +208,10 @@ const Table<Expectation>& expect_keys() {
     t.add("time", number(dimension::kTime, kPositive), &E::time,
           "Time up to which the measure counts, so that last is its value then; a profile is the one at this "
           "time. A step ends there. Default: the end of the run.");
-    t.add("tolerance", number(dimension::kNone, kPositive), &E::tolerance,
-          "Largest error that passes; relative where the reference is not 0, absolute otherwise.")
-        .required()
-        .only_with("measure", "reference or value",
-                   [](const E& e) { return !e.has_bounds() || e.value || !e.reference.empty(); });
+    t.add(
+        "tolerance", number(dimension::kNone, kPositive), &E::tolerance,
+        "Largest error that passes; relative where the reference is not 0, absolute otherwise. Required with "
+        "reference or value.");
     t.check(check_expectation);
     return t;
   }();

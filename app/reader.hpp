@@ -4,12 +4,14 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "app/node.hpp"
 #include "core/error.hpp"
+#include "core/units.hpp"
 #include "coupling/scene.hpp"
 
 namespace polder::app {
@@ -32,6 +34,13 @@ class Reader {
   void mark(const std::string& key, const Source& source);  // the key is given, there
   bool given(const std::string& key) const { return sources_.contains(key); }
 
+  // Dimension of the unit with which a value of any dimension is given; none if it is a plain number.
+  void note_dimension(const std::string& key, const Dimension& d) { dimensions_.emplace(key, d); }
+  std::optional<Dimension> dimension_of(const std::string& key) const {
+    const auto at = dimensions_.find(key);
+    return at == dimensions_.end() ? std::nullopt : std::optional(at->second);
+  }
+
   // Something is wrong with a key; its place is that of the key, or of the nearest table around it.
   void error(const std::string& key, const std::string& problem, const std::string& allowed = "");
   // An error was found in this key, in a part of it or in a table around it: its value cannot be relied on.
@@ -47,6 +56,7 @@ class Reader {
   std::string file_;
   std::filesystem::path directory_;
   std::map<std::string, Source> sources_;
+  std::map<std::string, Dimension> dimensions_;
   std::set<std::string> failed_;
   std::vector<Diagnostic> diagnostics_;
 };

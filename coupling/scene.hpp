@@ -212,7 +212,8 @@ struct Expectation {
   std::string norm = "l2";     // l2 | max | last | largest | smallest | magnitude | mean
   std::string from_stage;      // times count from the start of this stage; empty: from 0
   std::optional<double> time;  // up to which the measure counts [s]; a step ends there
-  double tolerance = 0;        // relative where the reference is not 0, absolute otherwise
+  // With a reference or a value: relative where that is not 0, absolute otherwise.
+  std::optional<double> tolerance;
   bool has_bounds() const { return at_least || at_most; }
   bool operator==(const Expectation&) const = default;
 };
