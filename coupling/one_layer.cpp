@@ -78,6 +78,12 @@ void update_water_cells(World<D>& world, double end) {
   w.conditions = conditions_at(world, end);
   w.cells.update(w.fill, w.conditions);
   w.pressure.refresh();
+  if (w.sealed_revision == w.cells.revision()) return;
+  w.sealed_revision = w.cells.revision();
+  std::vector<std::uint8_t> sealed(slots, 0);
+  for (const fdm::ActiveCell<D>& cell : w.cells.cells())
+    for (int node : cell.nodes) sealed[node] = 1;
+  world.skeleton.boundaries().set_sealed(std::move(sealed));
 }
 
 template <int D>

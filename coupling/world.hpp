@@ -25,10 +25,11 @@ struct PoreWater {
   // or slots).
   Reals cell_sums, fill, porosity, darcy_mobility;
   Reals node_gradient, acceleration, correction, mobility;
-  double wall_seconds = 0;    // spent on the water's part of the steps
-  double outflow = 0;         // water that has left by Darcy flow [m3]
-  double storage = 0;         // taken up by compression of the water [m3]
-  double initial_volume = 0;  // in the pores of saturated soil at the start [m3]
+  std::uint64_t sealed_revision = 0;  // of the cells whose nodes the boundaries know as sealed
+  double wall_seconds = 0;            // spent on the water's part of the steps
+  double outflow = 0;                 // water that has left by Darcy flow [m3]
+  double storage = 0;                 // taken up by compression of the water [m3]
+  double initial_volume = 0;          // in the pores of saturated soil at the start [m3]
 };
 
 // Hydraulic conductivities are defined with it where a scene has no gravity [m/s2].

@@ -135,8 +135,8 @@ void BoundarySet<D>::apply(double time, double dt, const Reals& sums, Reals& v, 
             for (int d = 0; d < D; ++d) u[d] -= normal * n.normal[d];
           break;
         case BoundaryKind::friction:
-          n.pressed = std::max(0.0, -normal);  // otherwise it leaves the wall
-          if (n.pressed > 0)
+          n.pressed = std::max(0.0, -normal);  // otherwise it leaves the wall, unless water seals it
+          if (n.pressed > 0 || (spec.side >= 0 && !sealed_.empty() && sealed_[slot]))
             for (int d = 0; d < D; ++d) u[d] -= normal * n.normal[d];
           break;
       }

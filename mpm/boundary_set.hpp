@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/grid.hpp"
@@ -58,6 +59,11 @@ class BoundarySet {
   // velocities alone (the second mapping of MUSL, which has friction in it already).
   void apply(double time, double dt, const Reals& sums, Reals& v, bool friction, bool record);
 
+  // Nodes (slots; empty: none) at which saturated soil cannot leave a friction boundary along a side of the
+  // grid: the gap would have to fill with water, which does not come through the wall. Their normal velocity
+  // is held both ways, and suction of the pore water carries what pulls.
+  void set_sealed(std::vector<std::uint8_t> sealed) { sealed_ = std::move(sealed); }
+
   // Force of boundary i on the material in the last recorded step [N per m thickness, per radian, or N].
   const Point<D>& reaction(int i) const { return reaction_[i]; }
 
@@ -76,6 +82,7 @@ class BoundarySet {
   std::vector<std::uint8_t> held_;
   std::vector<Point<D>> reaction_;
   std::uint64_t revision_ = 0;
+  std::vector<std::uint8_t> sealed_;
   bool sticking_ = false;
 };
 
