@@ -79,7 +79,7 @@ struct NumericsSpec {
   double courant = 0.5;             // step as a share of the limit of the skeleton wave [-]
   std::optional<double> time_step;  // fixed step [s]; warned about or refused beyond the limit
   double rhie_chow = 0.05;          // chi [-]
-  double solver_tolerance = 1e-9;   // relative, pressure
+  double solver_tolerance = 1e-7;   // relative, pressure
   bool operator==(const NumericsSpec&) const = default;
 };
 

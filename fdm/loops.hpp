@@ -6,7 +6,7 @@
 namespace polder::fdm {
 
 // Below this many elements starting a parallel region (about 2 us) costs more than it saves.
-inline constexpr int kParallelFrom = 8192;
+inline constexpr int kParallelFrom = 2048;
 
 // f(i) for i = 0 .. n-1; f writes only what belongs to i, so the result does not depend on the number of
 // threads.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/threads.hpp"
 #include "fdm/loops.hpp"
 
 namespace polder::fdm {
@@ -83,18 +84,18 @@ void NodeGradient<D>::build(const WaterCells<D>& cells) {
 
   // Nodes, each with the faces that meet in it.
   nodes_.clear();
-  std::vector<int> node_at(grid.slots(), -1);
+  node_at_.assign(grid.slots(), -1);
   std::vector<std::array<int, D>> used;
   const auto attach = [&](int slot, int axis, int face) {
     if (slot < 0) return;
-    if (node_at[slot] < 0) {
-      node_at[slot] = static_cast<int>(nodes_.size());
-      Node n{.slot = slot, .faces = {}};
+    if (node_at_[slot] < 0) {
+      node_at_[slot] = static_cast<int>(nodes_.size());
+      Node n{};
       for (auto& f : n.faces) f.fill(empty);
       nodes_.push_back(n);
       used.push_back({});
     }
-    const int n = node_at[slot];
+    const int n = node_at_[slot];
     nodes_[n].faces[axis][used[n][axis]++] = face;
   };
   for (int f = 0; f < static_cast<int>(interior.size()); ++f)
@@ -112,7 +113,6 @@ void NodeGradient<D>::build(const WaterCells<D>& cells) {
   };
   attach_all(where, mesh_faces);
   attach_all(wall_where, first_wall);
-  std::sort(nodes_.begin(), nodes_.end(), [](const Node& a, const Node& b) { return a.slot < b.slot; });
 }
 
 template <int D>
@@ -153,13 +153,18 @@ void NodeGradient<D>::evaluate(const WaterCells<D>& cells, std::span<const doubl
     g[first_wall + i] = inward ? g[walls_[i].first] : 0;
   }
 
-  std::fill(out.begin(), out.end(), 0.0);
-  for_each(static_cast<int>(nodes_.size()), [&](int i) {
-    const Node& n = nodes_[i];
-    for (int d = 0; d < D; ++d) {
-      double sum = 0, count = 0;
-      for (int face : n.faces[d]) sum += g[face], count += w[face];
-      if (count > 0) out[static_cast<std::size_t>(n.slot) * kStride + d] = sum / count;
+  constexpr int kBlock = Grid<D>::kCells;
+  parallel_for(static_cast<int>(node_at_.size()) / kBlock, [&](int block) {
+    for (int slot = block * kBlock; slot < (block + 1) * kBlock; ++slot) {
+      double* to = &out[static_cast<std::size_t>(slot) * kStride];
+      std::fill_n(to, kStride, 0.0);
+      if (node_at_[slot] < 0) continue;
+      const Node& n = nodes_[node_at_[slot]];
+      for (int d = 0; d < D; ++d) {
+        double sum = 0, count = 0;
+        for (int face : n.faces[d]) sum += g[face], count += w[face];
+        if (count > 0) to[d] = sum / count;
+      }
     }
   });
 }

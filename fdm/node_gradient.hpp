@@ -43,7 +43,6 @@ class NodeGradient {
  private:
   static constexpr int kMeeting = ipow(2, D - 1);  // faces of one axis that meet in a node
   struct Node {
-    int slot;
     std::array<std::array<int, kMeeting>, D> faces;  // numbers into gradient_, unused: the empty face
   };
   // A face that copies others: extensions beyond the surface, walls and closed boundaries.
@@ -52,6 +51,7 @@ class NodeGradient {
   };
 
   std::vector<Node> nodes_;
+  std::vector<int> node_at_;  // of each slot, -1: away from water
   std::vector<Copy> extensions_;
   std::vector<Copy> walls_;
   std::vector<int> opposite_;     // of each boundary face: the face on the other side of its cell

@@ -49,7 +49,7 @@ struct PressureStep {
   double rhie_chow = 0.05;                 // chi [-]
   // node_gradient(pressure(), present) before the step if the caller has it, else empty. Treatment of walls
   // does not matter: the faces inside need no normal gradient at one.
-  std::span<const double> pressure_gradient;
+  std::span<const double> pressure_gradient = {};
 };
 
 // Water leaving the soil through ... [m3/s]

@@ -133,7 +133,7 @@ void Skeleton<D>::predict(double dt, const Point<D>& gravity, double damping, co
 
 template <int D>
 void Skeleton<D>::constrain(double time, double dt) {
-  v_new_ = v_trial_;
+  std::swap(v_new_, v_trial_);  // the next prediction writes every component anew
   boundaries_.apply(time, dt, sums_, v_new_, true, true);
   std::vector<double> squares(grid_.blocks(), 0.0);
   parallel_for(grid_.blocks(), [&](int block) {
@@ -172,8 +172,9 @@ const Reals& Skeleton<D>::strain_velocity(double time, double dt) {
 template <int D>
 void Skeleton<D>::correct(double time, double dt, const Reals& correction) {
   const std::size_t stride = static_cast<std::size_t>(Grid<D>::kCells) * kVector;
-  if (options_.musl) v_before_ = v_new_;
+  if (options_.musl) v_before_.resize(v_new_.size());
   parallel_for(grid_.blocks(), [&](int block) {
+    if (options_.musl) std::copy_n(&v_new_[block * stride], stride, &v_before_[block * stride]);
     for (std::size_t i = block * stride; i < (block + 1) * stride; ++i) v_new_[i] += correction[i];
   });
   boundaries_.apply(time, dt, sums_, v_new_, false, false);

@@ -131,7 +131,7 @@ void update_velocities_of(mpm::Transfer<D>& t, double flip, const Reals& v_old, 
                           bool map) {
   constexpr int kTileNodes = mpm::Transfer<D>::kTileNodes, kTile = mpm::Transfer<D>::kTileSide;
   const Grid<D>& grid = *t.grid;
-  parallel_for(grid.occupied_blocks(), [&](int block) {
+  parallel_for_work(work_of_blocks(t), [&](int block) {
     alignas(64) double in[kTileNodes * kPair<D>];
     load_pair<D>(grid, block, v_old, v_new, in);
     double* out = t.tiles.data() + static_cast<std::size_t>(block) * kTileNodes * 4;
@@ -443,7 +443,7 @@ template <int D, Want kWant>
 MoveResult move_of(mpm::Transfer<D>& t, const MoveOptions& o, const Reals* v_old, const Reals& v_move,
                    const Reals& v_gradient) {
   std::vector<BlockResult> results(t.grid->occupied_blocks());
-  parallel_for(t.grid->occupied_blocks(), [&](int block) {
+  parallel_for_work(work_of_blocks(t), [&](int block) {
     results[block] = move_block<D, kWant>(t, o, v_old, v_move, v_gradient, block);
   });
   MoveResult total;

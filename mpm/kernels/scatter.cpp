@@ -121,7 +121,7 @@ void scatter_blocks(mpm::Transfer<D>& transfer) {
   constexpr int kTileNodes = mpm::Transfer<D>::kTileNodes;
   const Grid<D>& grid = *transfer.grid;
   const double h = grid.spacing();
-  parallel_for(grid.occupied_blocks(), [&](int block) {
+  parallel_for_work(work_of_blocks(transfer), [&](int block) {
     double* tile = transfer.tiles.data() + static_cast<std::size_t>(block) * kTileNodes * 8;
     std::memset(tile, 0, sizeof(double) * kTileNodes * 8);
     const BlockFrame<D> frame(grid, block);
@@ -158,7 +158,7 @@ template <int D>
 void scatter_cells_of(mpm::Transfer<D>& transfer) {
   constexpr int kTileNodes = mpm::Transfer<D>::kTileNodes, kTile = mpm::Transfer<D>::kTileSide;
   const Grid<D>& grid = *transfer.grid;
-  parallel_for(grid.occupied_blocks(), [&](int block) {
+  parallel_for_work(work_of_blocks(transfer), [&](int block) {
     double* tile = transfer.tiles.data() + static_cast<std::size_t>(block) * kTileNodes * 4;
     std::memset(tile, 0, sizeof(double) * kTileNodes * 4);
     const BlockFrame<D> frame(grid, block);
