@@ -106,10 +106,11 @@ const Table<NumericsSpec>& numerics_keys() {
           "materials.");
     t.add("time_step", number(dimension::kTime, kPositive), &NumericsSpec::time_step,
           "Fixed time step; without it the step is chosen from the limits.");
-    t.add("courant", number(dimension::kNone, {.min = 0, .max = 1, .min_open = true}), &NumericsSpec::courant,
+    t.add("courant", number(dimension::kNone, {.min = 0, .max = 1.5, .min_open = true}),
+          &NumericsSpec::courant,
           "Time step as a share of cell over drained wave speed; the stable limit, 1.7 or more for musl, is "
           "what explain prints. "
-          "Damped stages take 1 at most.")
+          "Damped stages take 1 at most, because damping shortens it.")
         .only_with("time_step", "time_step absent", [](const NumericsSpec& n) { return !n.time_step; });
     t.add("rhie_chow", number(dimension::kNone, {.min = 0, .max = 1}), &NumericsSpec::rhie_chow,
           "Coefficient of the term that damps checkerboard patterns of the pore pressure.");

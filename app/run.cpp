@@ -203,9 +203,11 @@ void Run::announce() {
   log_.line("step limit   " + digits(limit.dt, 4) + " s (" + limit.reason + ")");
   for (const std::string& s : simulation_.skipped()) log_.line("skipped      " + s);
   for (const std::string& note : notes(scene)) log_.warning(note);
-  if (scene.numerics.time_step && *scene.numerics.time_step > limit.dt)
-    log_.warning("numerics.time_step " + format_number(*scene.numerics.time_step) +
-                 " s is beyond the limit of stability");
+  const double step = scene.numerics.time_step.value_or(simulation_.automatic_step());
+  if (step > limit.dt)
+    log_.warning("the step of " + digits(step, 4) + " s (" +
+                 (scene.numerics.time_step ? "numerics.time_step" : "numerics.courant") +
+                 ") is beyond the limit of stability");
   if (options_.restart)
     log_.line("restarted at " + digits(simulation_.time(), 6) + " s, step " +
               std::to_string(simulation_.steps()));

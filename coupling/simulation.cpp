@@ -44,10 +44,17 @@ Simulation::Run<D>::Run(const Scene& s) : world(build_world<D>(s)) {
         {stage.name, stage.mode == Stage::Mode::equilibrium ? "equilibrium" : "dynamic", 0, 0, ""});
 }
 
+// Local damping enlarges a force against the motion by 1 + alpha, and shortens the stable step by the root of
+// it.
+template <int D>
+double Simulation::Run<D>::courant_share() const {
+  const bool damped = !finished() && present().damping > 0;
+  return damped ? std::min(scene.numerics.courant, 1.0) : scene.numerics.courant;
+}
+
 template <int D>
 double Simulation::Run<D>::automatic_step() const {
-  return scene.numerics.courant * world->skeleton.grid().spacing() /
-         world->skeleton.wave_speed(scene.materials);
+  return courant_share() * world->skeleton.grid().spacing() / world->skeleton.wave_speed(scene.materials);
 }
 
 template <int D>
@@ -84,7 +91,7 @@ void Simulation::Run<D>::step() {
   if (steps % kWaveInterval == 0) wave_speed = skeleton.wave_speed(scene.materials);
 
   // Time step: a share of the skeleton wave's limit; never more than a share of a cell for the fastest point.
-  double step_size = scene.numerics.courant * h / wave_speed;
+  double step_size = courant_share() * h / wave_speed;
   reason = "skeleton wave";
   if (scene.numerics.time_step) step_size = *scene.numerics.time_step, reason = "fixed by the case";
   if (speed * step_size > kSpeedShare * h) step_size = kSpeedShare * h / speed, reason = "particle speed";

@@ -55,6 +55,7 @@ struct Simulation::Run final : Simulation::Base {
 
   explicit Run(const Scene& s);
   void step() override;
+  double courant_share() const;
   double automatic_step() const override;
   std::vector<Column> history() const override;
   long particles() const override;
