@@ -170,7 +170,7 @@ def draw_field(series, name, field, frames, phreatic, output):
         if series.kind == "PointData":
             # Squares as wide as the points are apart; wider ones below close the gaps that shear opens between them.
             width = section.spacing * 72 * axis.get_position().width * figure.get_figwidth() / (right - left + 2 * margin)
-            for widening in (1.4, 1.04):
+            for widening in (2.0, 1.4, 1.04):
                 drawn = axis.scatter(*shapes[:, 0].T, s=(widening * width) ** 2, c=values, marker="s", linewidths=0,
                                      cmap=field.colours, vmin=low, vmax=high, antialiaseds=False)
         else:
