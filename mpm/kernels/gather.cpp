@@ -253,18 +253,19 @@ struct MoveFrame {
 template <int D>
 struct Motion {
   Pack gradient[D * D];  // dt dv_i/dx_j
-  Pack hoop;             // hoop strain
+  Pack hoop;             // strain across the plane: of hoops, and what the locking cure puts there
 
   POLDER_INLINE Pack trace() const {
     Pack sum = hoop;
     for (int d = 0; d < D; ++d) sum += gradient[d * D + d];
     return sum;
   }
-  // Replace the volumetric strain, equally in all directions that deform.
-  POLDER_INLINE void set_trace(Pack wanted, bool axisymmetric) {
-    const Pack correction = (wanted - trace()) * (1.0 / (D == 3 || axisymmetric ? 3 : 2));
+  // Replace the volumetric strain, a third along each direction: also across the plane, where it is zero in
+  // the mean of the cell. So a slice in space does what plane strain does.
+  POLDER_INLINE void set_trace(Pack wanted) {
+    const Pack correction = (wanted - trace()) * (1.0 / 3);
     for (int d = 0; d < D; ++d) gradient[d * D + d] += correction;
-    if (axisymmetric) hoop += correction;
+    if constexpr (D == 2) hoop += correction;
   }
 };
 
@@ -417,7 +418,7 @@ void move_body(const MoveFrame<D>& m, int block, int body, std::vector<Motion<D>
   for (int u = 0; u < packs; ++u) {
     const int p = range.first + u * kLanes;
     const Pack mean = select(load(&set.mass[p]) > 0, means.of(&set.home_cell[p]), Pack{});
-    motions[u].set_trace(mean, m.hoop);
+    motions[u].set_trace(mean);
   }
   for (int u = 0; u < packs; u += kBatchPacks)
     apply_law<D>(m, set, body, range.first + u * kLanes, std::min(kBatchPacks, packs - u), &motions[u]);

@@ -192,9 +192,8 @@ TEST_CASE("a slice between walls inside the grid, with the locking cure") {
   CHECK(walls.position < 1e-3);
   CHECK(walls.stress < 1e-3);
   const Difference cure = compare({false, true, mpm::ShapeKind::gimp, LockingCure::cell_average, 1000});
-  // In space the cure gives a third of a cell's share of the volume to the strain across the slice, which in
-  // plane strain has none: the stresses of the points of a cell scatter differently, and with them yielding.
-  CHECK(cure.position < 0.1);
-  CHECK(cure.stress < 0.35);
-  CHECK(cure.pressure < 0.1);
+  CHECK(cure.largest > 0.01);
+  CHECK(cure.position < 1e-5);
+  CHECK(cure.stress < 1e-5);
+  CHECK(cure.pressure < 1e-5);
 }
