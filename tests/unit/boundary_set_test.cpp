@@ -363,5 +363,8 @@ TEST_CASE("the held nodes follow the blocks of the grid") {
       return node[0] == 40 ? Point<2>{0, 2} : u;
     });
     CHECK(static_cast<int>(boundaries.held_components().size()) == nodes.grid.slots());
+    nodes.each([&](int slot, const Index<2>& node) {  // nothing is left of what the slot was before
+      CHECK(boundaries.held_components()[slot] == (node[1] == 0 ? 0b11 : node[0] == 40 ? 0b01 : 0));
+    });
   }
 }

@@ -198,16 +198,20 @@ TEST_CASE_TEMPLATE("points stay in order through many motions, and a second sort
 
 TEST_CASE_TEMPLATE("points on the upper sides belong to the last cells", T, Two, Three) {
   constexpr int D = T::value;
-  Grid<D> grid = make_grid<D>();
-  ParticleSet<D> set = make_points<D>(grid, 2);
-  for (int d = 0; d < D; ++d) set.position[d][0] = grid.origin()[d], set.position[d][1] = grid.upper()[d];
-  Index<D> last = grid.cells();
-  for (int& n : last) --n;
-  CHECK(set.occupied_block_numbers(grid) ==
-        std::vector<int>{grid.block_number(Index<D>{}), grid.block_number(last)});
-  activate_and_sort(grid, set);
-  check_order(grid, set, {0, 1});
-  CHECK(set.home_cell[set.find(1)] == grid.slot(last) % Grid<D>::kCells);
+  // In the second grid the upper sides are the borders of blocks: those beyond have nodes only.
+  Index<D> whole;
+  whole.fill(2 * Grid<D>::kSide);
+  for (Grid<D> grid : {make_grid<D>(), Grid<D>(Point<D>{}, whole, kSpacing)}) {
+    ParticleSet<D> set = make_points<D>(grid, 2);
+    for (int d = 0; d < D; ++d) set.position[d][0] = grid.origin()[d], set.position[d][1] = grid.upper()[d];
+    Index<D> last = grid.cells();
+    for (int& n : last) --n;
+    CHECK(set.occupied_block_numbers(grid) ==
+          std::vector<int>{grid.block_number(Index<D>{}), grid.block_number(last)});
+    activate_and_sort(grid, set);
+    check_order(grid, set, {0, 1});
+    CHECK(set.home_cell[set.find(1)] == grid.slot(last) % Grid<D>::kCells);
+  }
 }
 
 TEST_CASE("padding points occupy no block") {
