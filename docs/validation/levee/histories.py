@@ -23,6 +23,7 @@ from probe_figures import length, read_probes  # noqa: E402
 from results import Results  # noqa: E402
 
 KILO = 1e-3
+ROUNDING = 1e-6  # [s] of times in tables, so that the state at the start counts
 COARSE, FINE = "cells of 0.1 m", "cells of 0.05 m"
 
 
@@ -31,7 +32,7 @@ class Run:
         table = Results(folder).table("probes.csv")
         with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
             start = json.load(file)["stages"][0]["time"]
-        moving = table["time[s]"] >= start
+        moving = table["time[s]"] > start - ROUNDING
         self.time = table["time[s]"][moving] - start
         self.probes = {
             name: {quantity: values[moving] for quantity, values in probe.items()}
@@ -81,7 +82,7 @@ def draw_histories(runs, path):
     draw_panel(axes[2], runs, ["C1", "C2", "C3", "C4"], displacement, "(c)  Displacement", "m")
     draw_path(axes[3], runs, "P3")
     styles = [axes[0].plot([], [], run.line_style, color="0.4", label=run.label)[0] for run in runs]
-    panels = (["P1", "P2", "P3"], 0.44), (["P1", "P2", "P3"], 0.68), (["C1", "C2", "C3", "C4"], 0.16)
+    panels = (["P1", "P2", "P3"], 0.44), (["P1", "P2", "P3"], 0.5), (["C1", "C2", "C3", "C4"], 0.16)
     for axis, (names, free_height) in zip(axes, panels):
         low, high = axis.get_ylim()
         axis.set_ylim(low, high + 0.15 * (high - low))  # headroom, so that the legend covers no curve
