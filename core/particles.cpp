@@ -47,6 +47,9 @@ void ParticleSet<D>::append(int n) {
   index_ids();
 }
 
+// A point this far beyond a side of the grid lies on it but for rounding [cells].
+constexpr double kOnSide = 1e-9;
+
 template <int D>
 std::vector<int> ParticleSet<D>::occupied_block_numbers(const Grid<D>& grid) const {
   std::vector<char> seen(grid.block_numbers(), 0);
@@ -55,7 +58,7 @@ std::vector<int> ParticleSet<D>::occupied_block_numbers(const Grid<D>& grid) con
     Index<D> cell;
     for (int d = 0; d < D; ++d) {
       const double xi = (position[d][p] - grid.origin()[d]) / grid.spacing();
-      if (!(xi >= 0 && xi <= grid.cells()[d])) {
+      if (!(xi >= -kOnSide && xi <= grid.cells()[d] + kOnSide)) {
         char text[256];
         std::snprintf(
             text, sizeof text,
@@ -64,7 +67,7 @@ std::vector<int> ParticleSet<D>::occupied_block_numbers(const Grid<D>& grid) con
             D == 3 ? position[D - 1][p] : mass[p], velocity[0][p], velocity[1][p]);
         throw NumericalError(text);
       }
-      cell[d] = std::min(static_cast<int>(xi), grid.cells()[d] - 1);
+      cell[d] = std::clamp(static_cast<int>(xi), 0, grid.cells()[d] - 1);
     }
     seen[grid.block_number(cell)] = 1;
   }
