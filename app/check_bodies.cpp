@@ -31,15 +31,7 @@ std::string rounded(double value) {
 
 bool check_polygon(const Body& body, const std::string& key, Reader& reader) {
   const Polygon& p = body.polygon;
-  for (std::size_t i = 0; i < p.size(); ++i)
-    if (p[i] == p[(i + 1) % p.size()]) {
-      reader.error(key,
-                   i + 1 < p.size()
-                       ? "points " + std::to_string(i + 1) + " and " + std::to_string(i + 2) + " are the same"
-                       : "the last point repeats the first",
-                   "each corner once");
-      return false;
-    }
+  if (!check_corners(p, key, reader)) return false;
   const double area = std::abs(signed_area(p));
   const Extent e = extent_of(p);
   const double span = std::max(e.upper[0] - e.lower[0], e.upper[1] - e.lower[1]);

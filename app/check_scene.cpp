@@ -105,15 +105,7 @@ void check_column(const coupling::Measure& m, std::size_t i, Reader& reader) {
 void check_patch(const Boundary& b, const std::string& key, Reader& reader) {
   const Scene& scene = reader.scene;
   const std::vector<Vector3>& p = b.polygon;
-  for (std::size_t i = 0; i < p.size(); ++i)
-    if (p[i] == p[(i + 1) % p.size()]) {
-      reader.error(key,
-                   i + 1 < p.size()
-                       ? "points " + std::to_string(i + 1) + " and " + std::to_string(i + 2) + " are the same"
-                       : "the last point repeats the first",
-                   "each corner once");
-      return;
-    }
+  if (!check_corners(p, key, reader)) return;
   double span = 0;
   for (const Vector3& x : p)
     span = std::max(span, std::hypot(x[0] - p[0][0], x[1] - p[0][1], x[2] - p[0][2]));

@@ -18,6 +18,22 @@ void check_water(Reader& reader);
 void check_boundaries(Reader& reader);
 void check_measures(Reader& reader);
 
+// Whether every corner of a closed outline occurs once; reports the first that does not.
+template <class Corner>
+bool check_corners(const std::vector<Corner>& outline, const std::string& key, Reader& reader) {
+  const std::size_t count = outline.size();
+  for (std::size_t i = 0; i < count; ++i)
+    if (outline[i] == outline[(i + 1) % count]) {
+      reader.error(key,
+                   i + 1 < count
+                       ? "points " + std::to_string(i + 1) + " and " + std::to_string(i + 2) + " are the same"
+                       : "the last point repeats the first",
+                   "each corner once");
+      return false;
+    }
+  return true;
+}
+
 // Things that are right but that a user may want to know, such as keys the formulation does not need.
 std::vector<std::string> notes(const coupling::Scene& scene);
 

@@ -276,6 +276,22 @@ bool read_list(const Node& n, const std::string& key, const std::string& expecte
   return good;
 }
 
+namespace {
+
+// The items of a list as coordinates, of which there must be at most three.
+bool read_coordinates(const Node& n, const std::string& key, const std::string& expected,
+                      const Codec<double>& one, Vector3& v, Reader& reader) {
+  Vector3 read{};
+  std::size_t i = 0;
+  const bool good = read_list(n, key, expected, reader, [&](const Node& item, const std::string& k) {
+    return one.read(item, k, read[i++], reader);
+  });
+  v = read;
+  return good;
+}
+
+}  // namespace
+
 Codec<std::vector<double>> numbers(const Dimension& dimension, const Range& range) {
   const Codec<double> one = number(dimension, range);
   Codec<std::vector<double>> c;
@@ -324,13 +340,7 @@ Codec<Vector3> vector(const Dimension& dimension) {
                             : "");
       return false;
     }
-    Vector3 read{};
-    std::size_t i = 0;
-    const bool good = read_list(n, key, expected, reader, [&](const Node& item, const std::string& k) {
-      return one.read(item, k, read[i++], reader);
-    });
-    v = read;
-    return good;
+    return read_coordinates(n, key, expected, one, v, reader);
   };
   c.write = [one](const Vector3& v, const Scene& scene) {
     Node n = Node::array();
@@ -360,13 +370,7 @@ Codec<Vector3> section_point() {
           reader.dimension() == 3 ? "two coordinates: a section across y" : "two coordinates in a 2D grid");
       return false;
     }
-    Vector3 read{};
-    std::size_t i = 0;
-    const bool good = read_list(n, key, expected, reader, [&](const Node& item, const std::string& k) {
-      return one.read(item, k, read[i++], reader);
-    });
-    v = read;
-    return good;
+    return read_coordinates(n, key, expected, one, v, reader);
   };
   c.write = [one](const Vector3& v, const Scene& scene) {
     return Node::array({one.write(v[0], scene), one.write(v[1], scene)});

@@ -326,6 +326,8 @@ SolveReport PressureField<D>::solve(const PressureStep& step) {
   const std::size_t slots = cells_.grid().slots();
   require_current(std::min({p_.size(), step.velocity.size() / kStride, step.mobility.size(),
                             step.porosity.size(), step.darcy_mobility.size()}));
+  if (!step.pressure_gradient.empty() && step.pressure_gradient.size() < slots * kStride)
+    throw std::logic_error("PressureField: the pressure gradient does not cover the grid");
   if (!(step.dt > 0)) throw std::logic_error("PressureField: the time step must be positive");
   const auto cells = cells_.cells();
   const auto boundary = cells_.boundary_faces();

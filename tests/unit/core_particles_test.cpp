@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "core/particles.hpp"
+#include "tests/unit/random.hpp"
 
 using namespace polder;
 
@@ -15,18 +16,6 @@ namespace {
 
 using Two = std::integral_constant<int, 2>;
 using Three = std::integral_constant<int, 3>;
-
-// Reproducible numbers in [0, 1).
-class Random {
- public:
-  double operator()() {
-    state_ = state_ * 6364136223846793005ull + 1442695040888963407ull;
-    return static_cast<double>(state_ >> 11) * 0x1p-53;
-  }
-
- private:
-  unsigned long long state_ = 2024;
-};
 
 constexpr double kSpacing = 0.1;
 
@@ -54,7 +43,7 @@ ParticleSet<D> make_points(const Grid<D>& grid, int n) {
   for (Reals* r : {&set.pore_water, &set.suction_stress, &set.conductivity, &set.wet}) r->resize(1);
   set.append(n);
   for (ParticleField& f : set.fields()) f.values->resize(n);
-  Random random;
+  verify::Random random(2024);
   double tag = 0;
   for (ParticleField& f : set.fields()) {
     tag += 1000;
@@ -168,7 +157,7 @@ TEST_CASE_TEMPLATE("points stay in order through many motions, and a second sort
   Grid<D> grid = make_grid<D>();
   ParticleSet<D> set = make_points<D>(grid, 400);
   activate_and_sort(grid, set);
-  Random random;
+  verify::Random random(2024);
   bool moved_back = false;
   for (int step = 0; step < 12; ++step) {
     for (int p = 0; p < set.slots(); ++p)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fdm/pressure_field.hpp"
+#include "tests/unit/random.hpp"
 
 namespace polder::fdm::test {
 
@@ -85,18 +86,6 @@ WaterBoundary<D> boundary(typename WaterBoundary<D>::Kind kind, int side, double
   b.value = value;
   return b;
 }
-
-// Reproducible numbers in [0, 1).
-class Random {
- public:
-  double operator()() {
-    state_ = state_ * 6364136223846793005ull + 1442695040888963407ull;
-    return static_cast<double>(state_ >> 11) * 0x1p-53;
-  }
-
- private:
-  unsigned long long state_ = 12345;
-};
 
 // A trapezoidal levee on its foundation: 2 : 1 slopes, crest of a tenth of the width.
 inline bool in_levee(double x, double y) {  // both in units of the width, 0.45 high

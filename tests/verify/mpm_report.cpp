@@ -14,6 +14,7 @@
 #include "tests/verify/mpm_column.hpp"
 #include "tests/verify/mpm_loads.hpp"
 #include "tests/verify/mpm_motion.hpp"
+#include "tests/verify/report.hpp"
 
 using namespace polder::verify;
 
@@ -194,19 +195,5 @@ int main(int count, char** names) {
   const std::map<std::string, std::function<void()>> tables = {
       {"bar", bar},         {"collapse", collapse_table},         {"column", column}, {"cylinder", cylinder},
       {"footing", footing}, {"manufactured", manufactured_table}, {"slide", slide},   {"spin", spin}};
-  polder::set_threads(1);
-  int status = count > 1 ? 0 : 2;
-  for (int i = 1; i < count; ++i) {
-    const auto table = tables.find(names[i]);
-    if (table != tables.end())
-      table->second();
-    else
-      status = 2;
-  }
-  if (status != 0) {
-    std::fprintf(stderr, "usage: mpm_report TABLE ...   tables:");
-    for (const auto& [name, f] : tables) std::fprintf(stderr, " %s", name.c_str());
-    std::fprintf(stderr, "\n");
-  }
-  return status;
+  return print_tables("mpm_report", tables, count, names);
 }

@@ -12,6 +12,7 @@
 #include "tests/verify/one_layer_consolidation.hpp"
 #include "tests/verify/one_layer_limit.hpp"
 #include "tests/verify/one_layer_rest.hpp"
+#include "tests/verify/report.hpp"
 
 using namespace polder;
 using namespace polder::verify;
@@ -289,19 +290,5 @@ int main(int count, char** names) {
                                                                {"cure", cure_table},
                                                                {"limit", limit_table},
                                                                {"courant-one", courant_one_table}};
-  set_threads(1);
-  int status = count > 1 ? 0 : 2;
-  for (int i = 1; i < count; ++i) {
-    const auto table = tables.find(names[i]);
-    if (table != tables.end())
-      table->second();
-    else
-      status = 2;
-  }
-  if (status != 0) {
-    std::fprintf(stderr, "usage: one_layer_report TABLE ...   tables:");
-    for (const auto& [name, f] : tables) std::fprintf(stderr, " %s", name.c_str());
-    std::fprintf(stderr, "\n");
-  }
-  return status;
+  return print_tables("one_layer_report", tables, count, names);
 }
