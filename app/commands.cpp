@@ -68,7 +68,8 @@ Option set_option() {
 
 Option threads_option() {
   return {"--threads", "", "N",
-          "Number of threads; the results do not depend on it. Default: all cores, fewer for a small case.",
+          "Number of threads; the results do not depend on it. Default: all cores (or OMP_NUM_THREADS), "
+          "fewer for a small case.",
           false};
 }
 
