@@ -87,6 +87,15 @@ void update_water_cells(World<D>& world, double end) {
 }
 
 template <int D>
+void push_by_pressure(World<D>& world) {
+  PoreWater<D>& w = *world.pore_water;
+  w.node_gradient.resize(static_cast<std::size_t>(world.skeleton.grid().slots()) * 4);
+  w.pressure.node_gradient(w.pressure.pressure(), fdm::BoundaryValues::present, fdm::WallNormal::inward,
+                           w.node_gradient);
+  pressure_push(world.skeleton, w.node_gradient, 1.0, w.acceleration);
+}
+
+template <int D>
 mpm::MoveResult step_one_layer(World<D>& world, const StepInput& in, long step) {
   PoreWater<D>& w = *world.pore_water;
   mpm::Skeleton<D>& skeleton = world.skeleton;
@@ -98,10 +107,7 @@ mpm::MoveResult step_one_layer(World<D>& world, const StepInput& in, long step) 
   update_water_cells(world, end);
   skeleton.scatter(end);
 
-  w.node_gradient.resize(static_cast<std::size_t>(skeleton.grid().slots()) * 4);
-  w.pressure.node_gradient(w.pressure.pressure(), fdm::BoundaryValues::present, fdm::WallNormal::inward,
-                           w.node_gradient);
-  pressure_push(skeleton, w.node_gradient, 1.0, w.acceleration);
+  push_by_pressure(world);
   skeleton.predict(in.dt, gravity, in.damping, &w.acceleration);
 
   skeleton.constrain(end, in.dt);
@@ -153,6 +159,7 @@ mpm::MoveResult step_dry(World<D>& world, const StepInput& in) {
 
 #define POLDER_INSTANTIATE(D)                                                    \
   template void update_water_cells<D>(World<D>&, double);                        \
+  template void push_by_pressure<D>(World<D>&);                                  \
   template mpm::MoveResult step_one_layer<D>(World<D>&, const StepInput&, long); \
   template mpm::MoveResult step_dry<D>(World<D>&, const StepInput&);
 POLDER_INSTANTIATE(2)

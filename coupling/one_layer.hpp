@@ -22,6 +22,11 @@ struct StepInput {
 template <int D>
 void update_water_cells(World<D>& world, double end);
 
+// Acceleration of the nodes by the pore pressure as it is, into world.pore_water->acceleration [slots * 4];
+// after Skeleton::scatter().
+template <int D>
+void push_by_pressure(World<D>& world);
+
 template <int D>
 mpm::MoveResult step_one_layer(World<D>& world, const StepInput& in, long step);
 

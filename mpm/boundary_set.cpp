@@ -99,7 +99,7 @@ void BoundarySet<D>::apply(double time, double dt, const Reals& sums, Reals& v, 
   for (std::size_t s = 0; s < specs_.size(); ++s)
     for (int d = 0; d < D; ++d)
       if (specs_[s].kind == BoundaryKind::velocity && specs_[s].prescribed[d])
-        prescribed[s][d] = specs_[s].velocity[d](time);
+        prescribed[s][d] = still_ ? 0.0 : specs_[s].velocity[d](time);
   for (std::size_t first = 0, next = 0; first < nodes_.size(); first = next) {
     const int slot = nodes_[first].slot;
     double* u = &v[static_cast<std::size_t>(slot) * 4];

@@ -51,6 +51,9 @@ class BoundarySet {
   // Friction boundaries hold without slip while this is set (a stage that builds up initial stress).
   void set_sticking(bool sticking) { sticking_ = sticking; }
 
+  // Walls with a prescribed velocity stand still while this is set (relaxation, where no time passes).
+  void set_still(bool still) { still_ = still; }
+
   // Find the constrained nodes; cheap when the grid has not changed.
   void update(const Grid<D>& grid);
 
@@ -84,6 +87,7 @@ class BoundarySet {
   std::uint64_t revision_ = 0;
   std::vector<std::uint8_t> sealed_;
   bool sticking_ = false;
+  bool still_ = false;
 };
 
 extern template class BoundarySet<2>;

@@ -193,7 +193,21 @@ MoveResult Skeleton<D>::gather(double time, double dt) {
   // stressed soil at a surface start to oscillate.
   const Reals& v = strain_velocity(time + dt, dt);
   o.update_velocity = !options_.musl && options_.affine == AffineKind::none;
-  MoveResult r = update_stress_and_move(transfer_, o, options_.musl ? nullptr : &v_old_, v, v);
+  return move(time, o, options_.musl ? nullptr : &v_old_, v);
+}
+
+template <int D>
+MoveResult Skeleton<D>::deform(double time, double dt, const Reals& velocity) {
+  MoveOptions o;
+  o.dt = dt;
+  o.cell_average = options_.cell_average;
+  return move(time, o, nullptr, velocity);
+}
+
+template <int D>
+MoveResult Skeleton<D>::move(double time, const MoveOptions& o, const Reals* before, const Reals& v) {
+  const double dt = o.dt;
+  MoveResult r = update_stress_and_move(transfer_, o, before, v, v);
   for (SurfaceLoad<D>& load : loads_) load.move(grid_, options_.shape, dt, v, sums_);
   mapped_ = false;
   travelled_ += r.largest_displacement;

@@ -89,6 +89,10 @@ class Skeleton {
   // not finite.
   MoveResult gather(double time, double dt);
 
+  // Strain, stress and motion of the points from a nodal velocity of the caller's, after scatter(). The
+  // points' own velocities stay as they are: for relaxation, where motion has no inertia.
+  MoveResult deform(double time, double dt, const Reals& velocity);
+
   // Nodal fields.
   const Reals& sums() const { return sums_; }
   Reals& sums() { return sums_; }
@@ -101,6 +105,8 @@ class Skeleton {
   // reactions, pore pressure and damping included; zero at rest. load_norm: of gravity and surface loads [N].
   double unbalanced_force() const { return unbalanced_; }
   double load_norm() const { return load_norm_; }
+  // The same from a relaxation, which has its own steps.
+  void set_balance(double unbalanced, double load) { unbalanced_ = unbalanced, load_norm_ = load; }
   // Sum of surface loads in the last scatter [N].
   const Point<D>& applied_load() const { return applied_load_; }
 
@@ -115,6 +121,7 @@ class Skeleton {
   // Particle velocities changed by the step from one nodal velocity to another, and v_map_ from their
   // momenta.
   void remap(double flip, const Reals& from, const Reals& to, double time, double dt);
+  MoveResult move(double time, const MoveOptions& options, const Reals* before, const Reals& velocity);
   void allocate();
 
   Grid<D> grid_;
