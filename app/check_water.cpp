@@ -160,6 +160,19 @@ void check_water_boundaries(Reader& reader) {
   }
 }
 
+// A relaxation finds forces that balance for a water that stands; time for flow does not pass in it.
+void check_relaxations(Reader& reader) {
+  const auto& stages = reader.scene.stages;
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    const std::string key = "stage." + std::to_string(i + 1);
+    if (stages[i].mode == coupling::Stage::Mode::equilibrium && stages[i].damping == 0 &&
+        stages[i].water_flows && !reader.failed(key))
+      reader.error(key + ".water_flows",
+                   "in an equilibrium that is found by relaxation no time passes for water to flow",
+                   "false; or a damping, for damped motion in time");
+  }
+}
+
 }  // namespace
 
 void check_water(Reader& reader) {
@@ -168,6 +181,7 @@ void check_water(Reader& reader) {
   check_water_boundaries(reader);
   if (!f || reader.failed("formulation") || f->carrier == coupling::WaterCarrier::none) return;
   check_materials(reader);
+  check_relaxations(reader);
 }
 
 std::vector<std::string> notes(const Scene& scene) {

@@ -27,13 +27,17 @@ const Table<Stage>& stage_keys() {
     t.add("mode",
           choice<Stage::Mode>({{"equilibrium", Stage::Mode::equilibrium}, {"dynamic", Stage::Mode::dynamic}},
                               {"seepage", "quasi-static"}),
-          &Stage::mode, "equilibrium: until the forces balance; dynamic: with inertia, for the duration.")
+          &Stage::mode,
+          "equilibrium: until the forces balance, by relaxation, or by damped motion where damping is given; "
+          "dynamic: with inertia, for the duration.")
         .required();
     t.add("duration", number(dimension::kTime, kPositive), &Stage::duration,
           "Simulated time; of an equilibrium stage at most.")
         .required();
-    t.add("damping", number(dimension::kNone, {.min = 0, .max = 1, .max_open = true}), &Stage::damping,
-          "Local damping: share of the out-of-balance force that opposes the motion.");
+    t.add(
+        "damping", number(dimension::kNone, {.min = 0, .max = 1, .max_open = true}), &Stage::damping,
+        "Local damping: share of the out-of-balance force that opposes the motion; of an equilibrium, 0: it "
+        "is found by relaxation.");
     t.add("plastic", boolean(), &Stage::plastic, "false: the materials respond elastically.");
     t.add("sticking", boolean(), &Stage::sticking, "true: friction boundaries hold without slip.");
     t.add("water_flows", boolean(), &Stage::water_flows, "false: the pore pressure stays as it is.");

@@ -173,7 +173,7 @@ struct Stage {
   std::string name;
   enum class Mode { equilibrium, dynamic } mode = Mode::dynamic;
   double duration = 0;             // simulated time [s]; equilibrium: at most
-  double damping = 0;              // local damping alpha [0, 1)
+  double damping = 0;              // local damping alpha [0, 1); equilibrium with 0: relaxation
   bool plastic = true;             // false: materials respond elastically in this stage
   bool sticking = false;           // true: friction boundaries hold without slip in this stage
   bool water_flows = true;         // false: pore pressure stays as it is

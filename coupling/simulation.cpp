@@ -85,6 +85,7 @@ template <int D>
 void Simulation::Run<D>::step() {
   Stopwatch watch(timing.total);
   if (!laws_set) begin_stage();
+  if (relaxes()) return relax_step();
   const Stage& stage_spec = present();
   mpm::Skeleton<D>& skeleton = world->skeleton;
   const double h = skeleton.grid().spacing();
@@ -134,14 +135,7 @@ void Simulation::Run<D>::step() {
   if (stage_spec.mode == Stage::Mode::equilibrium) {
     const bool ramped = time - stage_start >= stage_spec.gravity_ramp;
     if (ramped && stage_steps % kRestInterval == 0 && at_rest()) return end_stage("equilibrium");
-    if (last)
-      throw NumericalError("stage '" + stage_spec.name +
-                           "' did not come to rest within its duration: out-of-balance force ratio " +
-                           std::to_string(force_ratio) + " (tolerance " +
-                           std::to_string(stage_spec.force_tolerance) + "), kinetic energy ratio " +
-                           std::to_string(energy_ratio) + " (tolerance " +
-                           std::to_string(stage_spec.energy_tolerance) +
-                           "); raise its duration or damping, or let plasticity rest (plastic = false)");
+    if (last) throw_unrest("raise its duration or damping, or let plasticity rest (plastic = false)");
   } else if (last) {
     end_stage("duration");
   }
@@ -256,6 +250,7 @@ void Simulation::Run<D>::visit(StateVisitor& v) {
       water.pressure.restore(pressure, pressure_cells);
     }
   }
+  visit_relaxation(v);
   if (v.reading()) laws_set = false;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "coupling/audit.hpp"
+#include "coupling/relaxation.hpp"
 #include "coupling/simulation.hpp"
 #include "coupling/world.hpp"
 
@@ -45,12 +46,17 @@ struct Simulation::Base {
 
   bool finished() const { return stage >= static_cast<int>(scene.stages.size()); }
   const Stage& present() const { return scene.stages[stage]; }
+  // Equilibrium without damping of its own: by relaxation, not by damped dynamic steps.
+  bool relaxes() const {
+    return !finished() && present().mode == Stage::Mode::equilibrium && present().damping == 0;
+  }
 };
 
 template <int D>
 struct Simulation::Run final : Simulation::Base {
   std::unique_ptr<World<D>> world;
   std::unique_ptr<Audit<D>> audit;
+  std::unique_ptr<Relaxation<D>> relaxation;  // of an equilibrium stage that has begun
   double initial_solid_mass = 0, initial_water_volume = 0;
 
   explicit Run(const Scene& s);
@@ -78,6 +84,10 @@ struct Simulation::Run final : Simulation::Base {
   void begin_stage();
   double next_mark(double stage_end) const;
   void end_stage(const std::string& by);
+  void begin_relaxation();
+  void relax_step();
+  void visit_relaxation(StateVisitor& visitor);
+  [[noreturn]] void throw_unrest(const std::string& advice) const;  // no equilibrium within the stage
   bool at_rest();  // equilibrium stages: both ratios below their tolerances
   // Body and slot of a point by its number over all bodies.
   std::pair<const ParticleSet<D>*, int> locate(int number) const;

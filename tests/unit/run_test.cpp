@@ -195,8 +195,8 @@ TEST_CASE("a loaded prism in space: same bits for threads and after a restart") 
 TEST_CASE("what breaks down ends with 3 and says so") {
   const Scratch scratch;
   const std::string folder = scratch / "failed";
-  const Result r =
-      polder_program({"run", kColumn, "-o", folder, "--quiet", "--set", "stage.settle.mode=equilibrium"});
+  const Result r = polder_program({"run", kColumn, "-o", folder, "--quiet", "--set",
+                                   "stage.settle.mode=equilibrium", "--set", "stage.settle.damping=0.1"});
   CHECK(r.code == 3);
   const auto summary = summary_of(folder);
   CHECK(summary.at("status") == "failed");
@@ -232,7 +232,8 @@ TEST_CASE("verify tells what passes and what misses") {
   CHECK(miss.out.find("MISS") != std::string::npos);
   CHECK(text_of(report).find("failures=\"1\"") != std::string::npos);
   const Result broken =
-      polder_program({"verify", kColumn, "-o", scratch / "v", "--set", "stage.settle.mode=equilibrium"});
+      polder_program({"verify", kColumn, "-o", scratch / "v", "--set", "stage.settle.mode=equilibrium",
+                      "--set", "stage.settle.damping=0.1"});
   CHECK(broken.code == 3);
   CHECK(polder_program({"verify", std::string(POLDER_SOURCE_DIR) + "/tests/valid_cases/minimal.toml"}).code ==
         2);
