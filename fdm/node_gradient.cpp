@@ -36,7 +36,7 @@ void NodeGradient<D>::build(const WaterCells<D>& cells) {
   std::vector<int> extension_at(face_at.size(), -1);
   for (int b = 0; b < static_cast<int>(boundary.size()); ++b) {
     const BoundaryFace<D>& f = boundary[b];
-    if (f.boundary >= 0) continue;
+    if (!f.free_surface) continue;
     Index<D> position = cells.cells()[f.cell].index;
     position[f.axis] += f.outward > 0 ? 2 : -1;
     const int slot = grid.slot(position);
@@ -116,11 +116,11 @@ void NodeGradient<D>::build(const WaterCells<D>& cells) {
 }
 
 template <int D>
-void NodeGradient<D>::evaluate(const WaterCells<D>& cells, std::span<const double> field,
-                               BoundaryValues values, WallNormal walls, std::span<double> out) {
+void NodeGradient<D>::evaluate(const WaterCells<D>& cells, std::span<const BoundaryFace<D>> boundary,
+                               std::span<const double> field, BoundaryValues values, WallNormal walls,
+                               std::span<double> out) {
   const auto list = cells.cells();
   const auto interior = cells.interior_faces();
-  const auto boundary = cells.boundary_faces();
   const int n_interior = static_cast<int>(interior.size());
   const int n_boundary = static_cast<int>(boundary.size());
   const double per_spacing = 1 / cells.grid().spacing();

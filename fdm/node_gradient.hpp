@@ -38,7 +38,13 @@ class NodeGradient {
 
   // field: value of each cell (slots); out: slots * kStride, [field unit / m], zero away from water.
   void evaluate(const WaterCells<D>& cells, std::span<const double> field, BoundaryValues values,
-                WallNormal walls, std::span<double> out);
+                WallNormal walls, std::span<double> out) {
+    evaluate(cells, cells.boundary_faces(), field, values, walls, out);
+  }
+  // The same with other pressures at the boundary faces, and others of them open.
+  void evaluate(const WaterCells<D>& cells, std::span<const BoundaryFace<D>> boundary,
+                std::span<const double> field, BoundaryValues values, WallNormal walls,
+                std::span<double> out);
 
  private:
   static constexpr int kMeeting = ipow(2, D - 1);  // faces of one axis that meet in a node

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "core/error.hpp"
+#include "fdm/cell_operators.hpp"
 #include "fdm/loops.hpp"
 
 namespace polder::fdm {
@@ -14,9 +15,13 @@ namespace {
 // below it the level of the pressure would be decided by rounding.
 constexpr double kClosedBasin = 1e-11;
 
-// Two half cells in a row: exact for flow across layers that meet at the face.
-double harmonic(double a, double b) {
-  return a + b > 0 ? 2 * a * b / (a + b) : 0;
+// Conditions that switch with the solution, or that ask for suction, belong to UnsaturatedField.
+template <int D>
+void refuse_unsaturated(const WaterConditions<D>& conditions) {
+  using Kind = typename WaterBoundary<D>::Kind;
+  for (const WaterBoundary<D>& b : conditions.boundaries)
+    if (b.kind == Kind::flux || b.kind == Kind::atmosphere || b.seepage_above || b.side == kFreeSurface)
+      throw std::logic_error("PressureField: water boundary '" + b.name + "' needs the unsaturated equation");
 }
 
 }  // namespace
@@ -64,6 +69,7 @@ void PressureField<D>::refresh() {
   if (grid_revision_ != grid.revision())
     throw std::logic_error("PressureField: the grid changed and carry() was not called");
   if (cells_revision_ == cells_.revision()) return;
+  refuse_unsaturated(cells_.conditions());
   cells_revision_ = cells_.revision();
   pressure_cells_.clear();
   for (const ActiveCell<D>& c : cells_.cells()) pressure_cells_.push_back(c.slot);
@@ -82,7 +88,9 @@ void PressureField<D>::refresh() {
   divergence_.assign(n, 0);
   discharge_.boundary.assign(cells_.conditions().boundaries.size(), 0);
   balance_ = {};
-  find_basins();
+  basins_ = find_basins(cells_);
+  basin_sink_.assign(basins_.first_cell.size(), 0);
+  basin_scale_.assign(basins_.first_cell.size(), 0);
 
   Connectivity<D> connectivity;
   connectivity.cells.reserve(n);
@@ -134,33 +142,6 @@ void PressureField<D>::require_current(std::size_t slots) const {
 // ---- assembly
 // -------------------------------------------------------------------------------------------------------
 
-template <int D>
-double PressureField<D>::face_mobility(const FaceNodes<D>& nodes, std::span<const double> mobility) const {
-  double sum = 0;
-  int count = 0;
-  for (int node : nodes) {
-    sum += mobility[node];
-    count += mobility[node] > 0;
-  }
-  return count > 0 ? sum / count : 0;
-}
-
-// (D v)_c: flow of the nodal velocity out of the cell [m3/s].
-template <int D>
-double PressureField<D>::divergence(const ActiveCell<D>& cell, std::span<const double> velocity) const {
-  constexpr double kMean = 1.0 / ipow(2, D - 1);
-  double sum = 0;
-  for (int d = 0; d < D; ++d) {
-    double low = 0, high = 0;
-    for (int corner = 0; corner < ipow(2, D); ++corner) {
-      const double v = velocity[static_cast<std::size_t>(cell.nodes[corner]) * kStride + d];
-      ((corner >> d) & 1 ? high : low) += v;
-    }
-    sum += kMean * (high * cell.areas[2 * d + 1] - low * cell.areas[2 * d]);
-  }
-  return sum;
-}
-
 // Volume flow out of the soil at the present pressure, - kappa (dp/dn - rho_w g.n) A.
 template <int D>
 double PressureField<D>::darcy_outflow(const BoundaryFace<D>& f, double darcy_mobility) const {
@@ -187,11 +168,11 @@ void PressureField<D>::face_terms(std::span<const double> mobility, std::span<co
     const InteriorFace<D>& f = interior[i];
     const int low = cells[f.low].slot, high = cells[f.high].slot;
     const double gradient = (p_[high] - p_[low]) * per_spacing;
-    const double kappa = harmonic(darcy_mobility[low], darcy_mobility[high]);
+    const double kappa = harmonic_mean(darcy_mobility[low], darcy_mobility[high]);
     double flow = kappa * (gradient - water_.density * water_.gravity[f.axis]);
     double conductance = kappa;
     if (inertia) {
-      const double lam = face_mobility(f.nodes, mobility);
+      const double lam = face_mobility<D>(f.nodes, mobility);
       conductance += lam * (1 + chi);
       if (chi > 0) {
         double mean = 0;
@@ -206,7 +187,7 @@ void PressureField<D>::face_terms(std::span<const double> mobility, std::span<co
   for_each(static_cast<int>(boundary.size()), [&](int b) {
     const BoundaryFace<D>& f = boundary[b];
     const double kappa = darcy_mobility[cells[f.cell].slot];
-    const double lam = inertia && f.open ? face_mobility(f.nodes, mobility) : 0;
+    const double lam = inertia && f.open ? face_mobility<D>(f.nodes, mobility) : 0;
     boundary_darcy_[b] = kappa;
     boundary_inertia_[b] = lam * f.area / f.distance;
     flow_[n_interior + b] = -darcy_outflow(f, kappa);
@@ -252,34 +233,6 @@ void PressureField<D>::gather_sinks() {
   accuracy_.floor = 8 * std::numeric_limits<double>::epsilon() * std::sqrt(p2);
 }
 
-template <int D>
-void PressureField<D>::find_basins() {
-  const int n = cells_.count();
-  std::vector<int> root(n);
-  for (int c = 0; c < n; ++c) root[c] = c;
-  const auto find = [&](int c) {
-    while (root[c] != c) c = root[c] = root[root[c]];
-    return c;
-  };
-  for (const InteriorFace<D>& f : cells_.interior_faces()) {
-    const int a = find(f.low), b = find(f.high);
-    root[std::max(a, b)] = std::min(a, b);
-  }
-  basin_.assign(n, -1);
-  basin_first_.clear();
-  for (int c = 0; c < n; ++c) {
-    const int first = find(c);  // the lowest number of the set, met first
-    if (first == c) {
-      basin_[c] = static_cast<int>(basin_first_.size());
-      basin_first_.push_back(c);
-    } else {
-      basin_[c] = basin_[first];
-    }
-  }
-  basin_sink_.assign(basin_first_.size(), 0);
-  basin_scale_.assign(basin_first_.size(), 0);
-}
-
 // Holds the increment of the first cell of every closed basin at zero: a sink there as large as the cell's
 // links. With a compatible right-hand side (no net inflow) the sink takes nothing and the solution is exact;
 // otherwise what it takes shows as the defect of the balance.
@@ -288,12 +241,13 @@ void PressureField<D>::pin_closed_basins() {
   const auto interior = cells_.interior_faces();
   std::fill(basin_sink_.begin(), basin_sink_.end(), 0.0);
   std::fill(basin_scale_.begin(), basin_scale_.end(), 0.0);
-  for (int c = 0; c < cells_.count(); ++c) basin_sink_[basin_[c]] += sink_[c];
-  for (std::size_t f = 0; f < interior.size(); ++f) basin_scale_[basin_[interior[f].low]] += conductance_[f];
+  for (int c = 0; c < cells_.count(); ++c) basin_sink_[basins_.of_cell[c]] += sink_[c];
+  for (std::size_t f = 0; f < interior.size(); ++f)
+    basin_scale_[basins_.of_cell[interior[f].low]] += conductance_[f];
   pinned_ = 0;
-  for (std::size_t b = 0; b < basin_first_.size(); ++b) {
+  for (std::size_t b = 0; b < basins_.first_cell.size(); ++b) {
     if (basin_sink_[b] > kClosedBasin * basin_scale_[b]) continue;
-    const int c = basin_first_[b];
+    const int c = basins_.first_cell[b];
     double links = 0;
     for (int face : cells_.cells()[c].faces)
       if (face >= 0 && face < static_cast<int>(interior.size())) links += conductance_[face];
@@ -336,7 +290,7 @@ SolveReport PressureField<D>::solve(const PressureStep& step) {
 
   face_terms(step.mobility, step.darcy_mobility, step.rhie_chow, step.pressure_gradient);
   for_each(cells_.count(), [&](int c) {
-    divergence_[c] = divergence(cells[c], step.velocity);
+    divergence_[c] = cell_outflow<D>(cells[c], step.velocity);
     storage_[c] = step.porosity[cells[c].slot] / water_.bulk_modulus * cells[c].volume / step.dt;
   });
   const SolveReport report = solve_increment();
@@ -394,7 +348,7 @@ void PressureField<D>::cell_divergence(std::span<const double> velocity, std::sp
   const auto cells = cells_.cells();
   std::fill(out.begin(), out.end(), 0.0);
   for_each(cells_.count(),
-           [&](int c) { out[cells[c].slot] = divergence(cells[c], velocity) / cells[c].volume; });
+           [&](int c) { out[cells[c].slot] = cell_outflow<D>(cells[c], velocity) / cells[c].volume; });
 }
 
 template <int D>
@@ -415,7 +369,7 @@ WaterBalance PressureField<D>::balance(std::span<const double> velocity) const {
   result.projection = 0;
   result.skeleton = 0;
   for (const ActiveCell<D>& c : cells_.cells()) {
-    result.skeleton += divergence(c, velocity);
+    result.skeleton += cell_outflow<D>(c, velocity);
   }
   return result;
 }

@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "core/aligned.hpp"
+#include "fdm/cell_operators.hpp"
 #include "fdm/linear_system.hpp"
 #include "fdm/node_gradient.hpp"
 #include "fdm/water_cells.hpp"
@@ -126,14 +127,11 @@ class PressureField {
   int pinned_basins() const { return pinned_; }  // in the last solution
 
  private:
-  double divergence(const ActiveCell<D>& cell, std::span<const double> velocity) const;
-  double face_mobility(const FaceNodes<D>& nodes, std::span<const double> mobility) const;
   double darcy_outflow(const BoundaryFace<D>& face, double darcy_mobility) const;
   void face_terms(std::span<const double> mobility, std::span<const double> darcy_mobility, double chi,
                   std::span<const double> pressure_gradient);
   void gather_sinks();
   void pin_closed_basins();
-  void find_basins();
   SolveReport solve_increment();
   void fill_new_cells();
   void require_current(std::size_t slots) const;
@@ -158,8 +156,7 @@ class PressureField {
   Reals storage_;  // (n / Kw) V / dt [m3 / (Pa s)]
   Reals sink_, rhs_, x_;
   std::vector<double> divergence_;  // (D v*)_c [m3/s]
-  std::vector<int> basin_;          // connected set of cells each active cell belongs to
-  std::vector<int> basin_first_;    // first cell of each basin
+  Basins basins_;
   std::vector<double> basin_sink_, basin_scale_;
   int pinned_ = 0;
   Discharge discharge_;

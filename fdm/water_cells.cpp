@@ -13,7 +13,8 @@ template <int D>
 bool same_geometry(const WaterConditions<D>& a, const WaterConditions<D>& b) {
   return std::equal(a.boundaries.begin(), a.boundaries.end(), b.boundaries.begin(), b.boundaries.end(),
                     [](const WaterBoundary<D>& x, const WaterBoundary<D>& y) {
-                      return x.side == y.side && x.kind == y.kind && x.from == y.from && x.to == y.to;
+                      return x.side == y.side && x.kind == y.kind && x.from == y.from && x.to == y.to &&
+                             x.seepage_above == y.seepage_above;
                     });
 }
 
@@ -111,6 +112,20 @@ int WaterCells<D>::boundary_at(const Index<D>& cell, int side) const {
   return found;
 }
 
+// The condition named for a face of the soil's free surface, -1 if there is none.
+template <int D>
+int WaterCells<D>::surface_boundary_at(const Index<D>& cell, int axis, bool upper) const {
+  Point<D> x = centre(cell);
+  x[axis] += (upper ? 0.5 : -0.5) * grid_.spacing();
+  for (int b = 0; b < static_cast<int>(conditions_.boundaries.size()); ++b) {
+    const WaterBoundary<D>& w = conditions_.boundaries[b];
+    bool inside = w.side == kFreeSurface;
+    for (int d = 0; d < D; ++d) inside = inside && x[d] >= w.from[d] && x[d] <= w.to[d];
+    if (inside) return b;
+  }
+  return -1;
+}
+
 template <int D>
 bool WaterCells<D>::is_open_surface(const Index<D>& cell, int side) const {
   const int b = boundary_at(cell, side);
@@ -118,7 +133,8 @@ bool WaterCells<D>::is_open_surface(const Index<D>& cell, int side) const {
 }
 
 template <int D>
-void WaterCells<D>::add_boundary_face(int cell, int axis, bool upper, int outside, int boundary) {
+void WaterCells<D>::add_boundary_face(int cell, int axis, bool upper, int outside, int boundary,
+                                      bool free_surface) {
   ActiveCell<D>& c = cells_[cell];
   const double area = c.areas[2 * axis + upper];
   if (area <= 0) return;  // the axis of symmetry
@@ -130,6 +146,7 @@ void WaterCells<D>::add_boundary_face(int cell, int axis, bool upper, int outsid
                        .area = area,
                        .outside = outside,
                        .boundary = boundary,
+                       .free_surface = free_surface,
                        .distance = 0.5 * grid_.spacing(),
                        .pressure = 0,
                        .open = true});
@@ -184,12 +201,13 @@ void WaterCells<D>::rebuild() {
       Index<D> beyond = cells_[cell].index;
       beyond[axis] += upper ? 1 : -1;
       if (grid_.is_cell(beyond)) {
-        add_boundary_face(cell, axis, upper, grid_.slot(beyond), -1);
+        add_boundary_face(cell, axis, upper, grid_.slot(beyond),
+                          surface_boundary_at(cells_[cell].index, axis, upper), true);
         continue;
       }
       const int boundary = boundary_at(cells_[cell].index, side);
       if (boundary >= 0 && conditions_.boundaries[boundary].kind != WaterBoundary<D>::Kind::impermeable)
-        add_boundary_face(cell, axis, upper, -1, boundary);
+        add_boundary_face(cell, axis, upper, -1, boundary, false);
     }
 }
 
@@ -202,20 +220,25 @@ void WaterCells<D>::refresh_distances(std::span<const double> fill) {
     double height = grid_.origin()[D - 1] + (c.index[D - 1] + 0.5) * h;  // where the pressure is prescribed
     const Kind kind = f.boundary < 0 ? Kind::surface : conditions_.boundaries[f.boundary].kind;
     const double value = f.boundary < 0 ? 0 : conditions_.boundaries[f.boundary].value;
-    if (kind == Kind::surface) {
+    if (kind == Kind::surface || f.free_surface) {
       const double beyond = f.outside < 0 ? 0 : std::min(fill[f.outside], 1.0);
       f.distance = h * (std::min(fill[c.slot], 1.0) + beyond - 0.5);
     }
     if (f.axis == D - 1) height += f.outward * f.distance;
     switch (kind) {
       case Kind::surface:
+      case Kind::atmosphere:
         f.pressure = std::max(0.0, conditions_.unit_weight * (conditions_.outside_level - height));
         break;
       case Kind::head:
         f.open = value >= height;
         f.pressure = f.open ? conditions_.unit_weight * (value - height) : 0;
         break;
-      default:
+      case Kind::impermeable:
+      case Kind::flux:
+        f.open = false;
+        break;
+      case Kind::pressure:
         f.pressure = value;
     }
   }

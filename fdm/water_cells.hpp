@@ -6,9 +6,9 @@
 //              theta = min(fill_c, 1) + min(fill_e, 1) - 1/2 >= kActiveFill - 1/2, so that a surface moves
 //              smoothly through the cells,
 //   side       on a side of the grid, at h/2, where a boundary condition lets water through,
-// and no face at all where a wall is. Cut cells by distance rather than by volume: Gibou et al. (2002), "A
-// second-order accurate symmetric discretization of the Poisson equation on irregular domains", with one
-// distance an axis.
+// and no face at all where a wall is. (A surface face that is named impermeable is kept, closed.) Cut cells
+// by distance rather than by volume: Gibou et al. (2002), "A second-order accurate symmetric discretization
+// of the Poisson equation on irregular domains", with one distance an axis.
 //
 // Areas and volumes are those of a unit thickness (plane strain, [m2] and [m3] per metre), of one radian
 // about the axis x = 0 (axisymmetric) or plain (3D). Lists are rebuilt only when the mask, the grid's
@@ -63,12 +63,13 @@ struct BoundaryFace {
   int axis;
   int outward;  // +1: the outward normal points along the axis, -1: against it
   FaceNodes<D> nodes;
-  double area;      // [m2]
-  int outside;      // slot of the inactive cell beyond, -1 if there is none
-  int boundary;     // number of the boundary condition; -1: free surface
-  double distance;  // from the cell's centre to where the pressure is prescribed [m]
-  double pressure;  // prescribed there [Pa]
-  bool open;        // false: impermeable at present (above the level of its head)
+  double area;        // [m2]
+  int outside;        // slot of the inactive cell beyond, -1 if there is none
+  int boundary;       // number of the boundary condition; -1: free surface without a name
+  bool free_surface;  // where the soil ends inside the grid
+  double distance;    // from the cell's centre to where the pressure is prescribed [m]
+  double pressure;    // prescribed there [Pa]
+  bool open;          // false: impermeable at present (above the level of its head)
 };
 
 template <int D>
@@ -103,8 +104,9 @@ class WaterCells {
  private:
   void rebuild();
   double face_area(const Index<D>& cell, int axis, bool upper) const;
-  void add_boundary_face(int cell, int axis, bool upper, int outside, int boundary);
+  void add_boundary_face(int cell, int axis, bool upper, int outside, int boundary, bool free_surface);
   int boundary_at(const Index<D>& cell, int side) const;
+  int surface_boundary_at(const Index<D>& cell, int axis, bool upper) const;
   void refresh_distances(std::span<const double> fill);
 
   const Grid<D>& grid_;

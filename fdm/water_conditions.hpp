@@ -1,9 +1,13 @@
-// Boundary conditions of the pore water at one instant, as the pressure equation needs them.
+// Boundary conditions of the pore water at one instant, as the pressure equations need them.
 //
 // Pressures are pore pressures [Pa], compression positive, relative to the atmosphere. Heights are measured
 // along the last axis (y in 2D, z in 3D), upwards [m]. Water standing at level H exerts p = unit_weight (H -
-// height) below the level; a part of a side above the level of its head is impermeable (seepage faces are not
-// modelled here). Everything that is not named is impermeable: the sides of the grid are walls.
+// height) below the level. Everything that is not named is impermeable on the sides of the grid; the soil's
+// own free surface is at atmospheric pressure where soil is saturated throughout, and a seepage face (water
+// may leave, not enter) where it need not be.
+//
+// Seepage faces, flux, atmosphere and conditions named on the free surface need the unsaturated equation
+// (fdm/unsaturated_field.hpp); the saturated one (fdm/pressure_field.hpp) refuses them.
 #pragma once
 
 #include <limits>
@@ -14,21 +18,35 @@
 
 namespace polder::fdm {
 
-// A part of one side of the grid through which water may pass.
+inline constexpr int kFreeSurface = -1;  // instead of a side of the grid: where the soil ends inside it
+
+// A part of one side of the grid, or of the soil's free surface, through which water may pass.
 template <int D>
 struct WaterBoundary {
   enum class Kind {
     impermeable,  // no flow; the same as not naming it, kept so that a schedule can close a boundary
-    head,         // hydrostatic below the water level `value` [m]
+    head,         // hydrostatic below the water level `value` [m]; above it impermeable or a seepage face
     pressure,     // uniform pressure `value` [Pa]
     surface,      // the soil ends here as at its free surface: pressure of the open water, else zero
+    flux,         // inflow `value` [m/s] through every face, whatever pressure that takes
+    atmosphere,   // rain or evaporation as far as the soil takes or gives it, and outflow: see below
   };
   std::string name;
   Kind kind = Kind::head;
-  int side = 0;   // 2 * axis + (0 lower, 1 upper)
-  Point<D> from;  // the part of the side whose face centres lie in [from, to]; the component along the side's
-  Point<D> to;    // own axis is ignored; the whole side by default
-  double value = 0;  // water level [m] or pressure [Pa]
+  int side = 0;   // 2 * axis + (0 lower, 1 upper), or kFreeSurface
+  Point<D> from;  // the part whose face centres lie in [from, to]; on a side of the grid the component along
+  Point<D> to;    // its own axis is ignored; everything by default
+  double value = 0;  // water level [m], pressure [Pa], inflow [m/s] or potential inflow [m/s]
+
+  bool seepage_above = false;  // head: water may leave above the level
+
+  // Atmosphere: `value` is the potential inflow per horizontal area, rain positive, evaporation negative; it
+  // acts on faces that look upwards. The face takes it as long as the surface pressure stays between
+  // `limiting_pressure` (evaporation dries no further) and the weight of `ponding_depth` of water (what
+  // exceeds it runs off). At the upper limit water may also leave: with value 0 a plain seepage face. Below
+  // the open water's level (WaterConditions::outside_level) the face is hydrostatic.
+  double ponding_depth = 0;                                             // [m]
+  double limiting_pressure = -std::numeric_limits<double>::infinity();  // [Pa]
 
   WaterBoundary() {
     from.fill(-std::numeric_limits<double>::infinity());
@@ -41,7 +59,8 @@ struct WaterConditions {
   double unit_weight = 9810;  // of water [N/m3]
   // Level of open water over the soil's own surface [m]; none: the surface is at atmospheric pressure.
   double outside_level = -std::numeric_limits<double>::infinity();
-  std::vector<WaterBoundary<D>> boundaries;  // must not overlap
+  // Those on one side of the grid must not overlap; on the free surface the first one that fits counts.
+  std::vector<WaterBoundary<D>> boundaries;
 };
 
 }  // namespace polder::fdm

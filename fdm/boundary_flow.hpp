@@ -1,0 +1,105 @@
+// Flow of water through one boundary face of soil that need not be saturated.
+//
+// The flow that a surface pressure p_b drives into the cell with pressure p_c at the distance d is
+//   Q(p_b) = A (k k_r / gamma_w) [ (p_b - p_c) / d + rho_w g.m ],   m the inward normal;
+// k_r that of p_b where water enters (a dry coarse cell behind a wet surface would otherwise keep rain out
+// that the soil takes), the mean of surface and cell where it leaves.
+// A face then is closed, has a pressure, has a flow, or is complementary: it takes the potential inflow R as
+// long as the surface pressure stays between two limits,
+//   Q = max( min( R, Q(upper) ), Q(lower) ),
+// which is at once rain with ponding and run-off, evaporation down to a limiting suction, and, with R = 0 and
+// upper = 0, a seepage face. The derivative of that expression makes the iteration a semismooth Newton
+// method for the complementarity conditions (Qi & Sun 1993, Math. Program. 58); no list of switched faces is
+// kept.
+#pragma once
+
+#include <limits>
+
+#include "fdm/water_cells.hpp"
+
+namespace polder::fdm {
+
+struct BoundaryLaw {
+  enum class Kind { closed, pressure, flow, complementary } kind = Kind::closed;
+  double upper = 0;  // surface pressure: the prescribed one, or the most [Pa]
+  double lower = -std::numeric_limits<double>::infinity();  // the least [Pa]
+  double inflow = 0;                                        // prescribed or potential [m3/s]
+  double upper_conductivity = 1, lower_conductivity = 1;    // k_r at the limits
+  double gravity = 0;     // rho_w g.m d: what the water's weight adds to the pressure difference [Pa]
+  bool upstream = false;  // k_r of the cell alone where water leaves
+};
+
+struct BoundaryFlow {
+  double inflow = 0;       // [m3/s]
+  double conductance = 0;  // -d inflow / d p_c at constant k_r [m3/(Pa s)]
+  double pressure = 0;     // at the surface, where the law prescribes it
+  bool prescribed = false;
+};
+
+// kappa: saturated A k / (gamma_w d) [m3/(Pa s)]; p, relative: pressure and k_r of the cell.
+inline BoundaryFlow boundary_flow(const BoundaryLaw& law, double kappa, double p, double relative) {
+  const auto driven = [&](double surface, double surface_relative) {
+    const double difference = surface - p + law.gravity;
+    const double leaving = law.upstream ? relative : 0.5 * (surface_relative + relative);
+    const double conductance = kappa * (difference > 0 ? surface_relative : leaving);
+    return BoundaryFlow{conductance * difference, conductance, surface, true};
+  };
+  switch (law.kind) {
+    case BoundaryLaw::Kind::closed:
+      return {};
+    case BoundaryLaw::Kind::flow:
+      return {law.inflow, 0, 0, false};
+    case BoundaryLaw::Kind::pressure:
+      return driven(law.upper, law.upper_conductivity);
+    case BoundaryLaw::Kind::complementary:
+      break;
+  }
+  const BoundaryFlow most = driven(law.upper, law.upper_conductivity);
+  if (law.inflow >= most.inflow) return most;
+  if (law.lower > -std::numeric_limits<double>::infinity()) {
+    const BoundaryFlow least = driven(law.lower, law.lower_conductivity);
+    if (law.inflow <= least.inflow) return least;
+  }
+  return {law.inflow, 0, 0, false};
+}
+
+// The law of a face under the conditions of the cells; k_r at its limits is left to the caller, who knows the
+// soil.
+template <int D>
+BoundaryLaw boundary_law(const BoundaryFace<D>& face, const WaterConditions<D>& conditions) {
+  using Kind = typename WaterBoundary<D>::Kind;
+  BoundaryLaw law;
+  const WaterBoundary<D>* named = face.boundary < 0 ? nullptr : &conditions.boundaries[face.boundary];
+  const Kind kind = named ? named->kind : Kind::surface;
+  switch (kind) {
+    case Kind::impermeable:
+      break;
+    case Kind::pressure:
+      law.kind = BoundaryLaw::Kind::pressure;
+      law.upper = face.pressure;
+      break;
+    case Kind::flux:
+      law.kind = BoundaryLaw::Kind::flow;
+      law.inflow = named->value * face.area;
+      break;
+    case Kind::head:
+      if (face.open) {
+        law.kind = BoundaryLaw::Kind::pressure;
+        law.upper = face.pressure;
+      } else if (named->seepage_above) {
+        law.kind = BoundaryLaw::Kind::complementary;
+      }
+      break;
+    case Kind::surface:
+    case Kind::atmosphere:
+      law.kind = face.pressure > 0 ? BoundaryLaw::Kind::pressure : BoundaryLaw::Kind::complementary;
+      law.upper = face.pressure;
+      if (kind == Kind::surface || face.pressure > 0) break;
+      law.upper = conditions.unit_weight * named->ponding_depth;
+      law.lower = named->limiting_pressure;
+      if (face.axis == D - 1 && face.outward > 0) law.inflow = named->value * face.area;
+  }
+  return law;
+}
+
+}  // namespace polder::fdm

@@ -1,0 +1,330 @@
+// State and iteration of UnsaturatedField.
+//
+// One iteration evaluates the balance at the present p and solves the symmetric system of its derivative
+// without that of k_r (modified Picard: Celia, Bouloutas & Zarba 1990). Four things make it robust and fast:
+// * Cells whose storage is far from linear over the change take the root of their own balance instead, so
+// that
+//   dry soil does not shoot over whatever its curve (in place of the switching of primary variables by
+//   Forsyth, Wu & Pruess 1995, Adv. Water Resour. 18).
+// * The iterates are combined after Anderson (fdm/anderson.hpp), which makes up for the missing derivative.
+// * The combination starts afresh when the residual has grown.
+// * When it has not fallen for a while the moves are halved: a lagged k_r can go around in circles.
+#include "fdm/unsaturated_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+#include "core/error.hpp"
+#include "fdm/loops.hpp"
+
+namespace polder::fdm {
+
+template <int D>
+UnsaturatedField<D>::UnsaturatedField(const WaterCells<D>& cells, const WaterProperties<D>& water,
+                                      std::vector<Soil<D>> soils, SolverKind solver)
+    : cells_(cells), water_(water), soils_(std::move(soils)), solver_(make_solver<D>(solver)) {
+  if (!(water.density > 0) || !(water.bulk_modulus > 0))
+    throw InputError("water: density and bulk modulus must be positive");
+  if (soils_.empty()) throw InputError("unsaturated flow: no soil is given");
+  double g2 = 0;
+  for (double g : water.gravity) g2 += g * g;
+  // Suction head is measured in the weight of water; without gravity in that of the earth's surface.
+  const double unit_weight = water.density * (g2 > 0 ? std::sqrt(g2) : 9.81);
+  for (const Soil<D>& s : soils_) {
+    curves_.emplace_back(s.retention, unit_weight);
+    for (double a : s.anisotropy)
+      if (!(a > 0)) throw InputError("unsaturated flow: the factors of anisotropy must be positive");
+  }
+}
+
+template <int D>
+UnsaturatedField<D>::~UnsaturatedField() = default;
+
+template <int D>
+const char* UnsaturatedField<D>::solver_name() const {
+  return solver_->name();
+}
+
+template <int D>
+void UnsaturatedField<D>::carry() {
+  const Grid<D>& grid = cells_.grid();
+  grid.carry(p_);
+  grid.carry(saturation_, 1, kFromPressure);
+  positive_.assign(grid.slots(), 0);
+  increment_.assign(grid.slots(), 0);
+  grid_revision_ = grid.revision();
+}
+
+template <int D>
+void UnsaturatedField<D>::restore(const Reals& pressure, const Reals& saturation,
+                                  const std::vector<int>& pressure_cells) {
+  if (pressure_cells != pressure_cells_) cells_revision_ = 0;
+  p_ = pressure, saturation_ = saturation, pressure_cells_ = pressure_cells;
+}
+
+template <int D>
+void UnsaturatedField<D>::refresh() {
+  const Grid<D>& grid = cells_.grid();
+  if (grid_revision_ == 0) carry();
+  if (grid_revision_ != grid.revision())
+    throw std::logic_error("UnsaturatedField: the grid changed and carry() was not called");
+  if (cells_revision_ == cells_.revision()) return;
+  cells_revision_ = cells_.revision();
+  const auto cells = cells_.cells();
+  const std::size_t n = cells.size(), interior = cells_.interior_faces().size();
+  const std::size_t faces = interior + cells_.boundary_faces().size();
+
+  // Cells without a past: the mean head of their neighbours, layer by layer where several are new.
+  std::vector<unsigned char> known(grid.slots(), 0);
+  for (int s : pressure_cells_) known[s] = 1;
+  const bool first = pressure_cells_.empty();
+  pressure_cells_.clear();
+  for (const ActiveCell<D>& c : cells) pressure_cells_.push_back(c.slot);
+  for (int s = 0; s < grid.slots(); ++s)
+    if (!cells_.active(s)) p_[s] = 0, saturation_[s] = kFromPressure;
+  std::vector<int> found;
+  for (bool more = !first; more;) {
+    found.clear();
+    for (const ActiveCell<D>& c : cells) {
+      if (known[c.slot]) continue;
+      double sum = 0;
+      int count = 0;
+      for (int side = 0; side < 2 * D; ++side) {
+        if (c.faces[side] < 0 || c.faces[side] >= static_cast<int>(interior)) continue;
+        const InteriorFace<D>& f = cells_.interior_faces()[c.faces[side]];
+        const int other = cells[side % 2 ? f.high : f.low].slot;
+        if (!known[other]) continue;
+        const double rise =
+            water_.density * water_.gravity[side / 2] * grid.spacing();  // of p along the axis
+        sum += p_[other] + (side % 2 ? -rise : rise), ++count;
+      }
+      if (count == 0) continue;
+      p_[c.slot] = sum / count;
+      saturation_[c.slot] = kFromPressure;
+      found.push_back(c.slot);
+    }
+    for (int s : found) known[s] = 1;
+    more = !found.empty();
+  }
+
+  gradient_.build(cells_);
+  node_grad_.assign(static_cast<std::size_t>(grid.slots()) * kStride, 0);
+  std::fill(increment_.begin(), increment_.end(), 0.0);
+  std::fill(positive_.begin(), positive_.end(), 0.0);
+  soil_.assign(n, -1);
+  saturated_.assign(n, 0);
+  cell_.assign(n, {});
+  for (Reals* a : {&p_now_, &p_old_, &s_now_, &s_old_, &capacity_, &kr_, &positive_old_, &plus_change_,
+                   &projection_, &sink_, &rhs_, &diagonal_, &change_, &rounding_, &image_})
+    a->assign(n, 0);
+  for (Reals* a : {&kappa_, &lambda_, &flow_, &conductance_}) a->assign(faces, 0);
+  correction_.assign(interior, 0);
+  acceleration_.resize(n);
+  laws_.assign(faces - interior, {});
+  discharge_ = {};
+  discharge_.boundary.assign(cells_.conditions().boundaries.size(), 0);
+  balance_ = {};
+  basins_ = find_basins(cells_);
+
+  Connectivity<D> connectivity;
+  connectivity.cells.reserve(n);
+  connectivity.links.reserve(interior);
+  for (const ActiveCell<D>& c : cells) connectivity.cells.push_back(c.index);
+  for (const InteriorFace<D>& f : cells_.interior_faces())
+    connectivity.links.push_back({f.low, f.high, f.axis});
+  solver_->analyse(connectivity);
+}
+
+template <int D>
+void UnsaturatedField<D>::require_current(std::size_t slots) const {
+  if (cells_revision_ != cells_.revision() || cells_revision_ == 0)
+    throw std::logic_error("UnsaturatedField: the active cells changed and refresh() was not called");
+  if (slots < static_cast<std::size_t>(cells_.grid().slots()) ||
+      p_.size() != static_cast<std::size_t>(cells_.grid().slots()))
+    throw std::logic_error("UnsaturatedField: an array does not cover the grid");
+}
+
+// ---- iteration
+
+// Pressure of cell c after the linear system asked for the change d. Where the linearised storage is no good
+// over that distance, the root of the cell's own balance
+//   pores [S(p) - S_m] + L (p - p_m) = (pores dS/dp + L) d,
+// with the true curve and L the conductance to all else; it is taken if it is the smaller change.
+template <int D>
+double UnsaturatedField<D>::changed_pressure(int c, double d) const {
+  constexpr double kLinear = 0.01;  // of |p|: storage is linear over this distance
+  constexpr int kSections = 60;
+  const double before = p_now_[c], after = before + d;
+  if (saturated_[c] || (before >= 0 && after >= 0) || std::abs(d) < kLinear * std::abs(before)) return after;
+  const RetentionCurve& curve = curves_[soil_[c]];
+  const double pores = cell_[c].pores, links = diagonal_[c] - pores * capacity_[c];
+  const double target = diagonal_[c] * d;
+  const auto excess = [&](double p) {
+    return pores * (curve.saturation(p) - s_now_[c]) + links * (p - before) - target;
+  };
+  double low = before, high = after, f_low = -target, f_high = excess(after);
+  if (f_low * f_high >= 0) return after;
+  // Illinois variant of false position; a few digits are enough.
+  for (int i = 0; i < kSections && std::abs(high - low) > 1e-3 * std::abs(high); ++i) {
+    const double p = (low * f_high - high * f_low) / (f_high - f_low), f = excess(p);
+    if (f == 0) return p;
+    if (f * f_high < 0)
+      low = high, f_low = f_high;
+    else
+      f_low *= 0.5;
+    high = p, f_high = f;
+  }
+  return high;
+}
+
+// Moves p by the change that the linear system asks for; the largest move.
+template <int D>
+double UnsaturatedField<D>::advance() {
+  double largest = 0;
+  for_each(cells_.count(), [&](int c) {
+    image_[c] = p_now_[c] + relaxation_ * (changed_pressure(c, change_[c]) - p_now_[c]);
+  });
+  for (int c = 0; c < cells_.count(); ++c) largest = std::max(largest, std::abs(image_[c] - p_now_[c]));
+  acceleration_.next(p_now_, image_, diagonal_);
+  return largest;
+}
+
+template <int D>
+StepReport UnsaturatedField<D>::solve(const UnsaturatedStep& step) {
+  if (!(step.dt > 0)) throw std::logic_error("UnsaturatedField: the time step must be positive");
+  prepare(step);
+  acceleration_.restart();
+  StepReport report;
+  const std::span<const double> links =
+      std::span<const double>(conductance_).first(cells_.interior_faces().size());
+  constexpr int kPatience = 8;
+  double last = std::numeric_limits<double>::infinity(), best = last;
+  int waited = 0;
+  relaxation_ = 1;
+  for (int i = 0;; ++i) {
+    assemble();
+    const Residual residual = gather();
+    report.residual = residual.relative();
+    if (!std::isfinite(residual.sum)) {
+      report.failure = "the pressure is not a number";
+      return report;
+    }
+    if (residual.small(tolerance_)) break;
+    if (i == max_iterations_) {
+      report.failure = "no convergence in " + std::to_string(i) + " iterations";
+      return report;
+    }
+    pin_closed_basins();
+    // No more digits than the next evaluation can use; all of them where the balance is linear.
+    Accuracy accuracy;
+    accuracy.tolerance =
+        std::clamp(0.01 * (tolerance_ * residual.scale + residual.rounding) / residual.sum, 1e-12, 1e-3);
+    accuracy.floor = rounding_norm_;
+    try {
+      report.linear_iterations += solver_->solve({sink_, links, rhs_}, accuracy, change_).iterations;
+    } catch (const NumericalError& error) {
+      report.failure = error.what();
+      return report;
+    }
+    if (residual.sum > last) acceleration_.restart();
+    last = residual.sum;
+    if (residual.sum < 0.9 * best) {
+      best = residual.sum, waited = 0;
+    } else if (++waited == kPatience) {
+      waited = 0;
+      relaxation_ = std::max(0.5 * relaxation_, 0.05);
+      acceleration_.restart();
+    }
+    report.largest_change = advance();
+    report.iterations = i + 1;
+  }
+  report.converged = true;
+  accept();
+  return report;
+}
+
+// Leaves the step with its state, discharges and balance.
+template <int D>
+void UnsaturatedField<D>::accept() {
+  const auto cells = cells_.cells();
+  balance_ = {};
+  for (int c = 0; c < cells_.count(); ++c) {
+    const int slot = cells[c].slot;
+    p_[slot] = p_now_[c];
+    saturation_[slot] = s_now_[c];
+    positive_[slot] = positive(c);
+    increment_[slot] = plus_change_[c];
+    const double stored =
+        cell_[c].pores * (s_now_[c] - s_old_[c]) + cell_[c].elastic * s_now_[c] * (p_now_[c] - p_old_[c]);
+    const double skeleton = s_now_[c] * cell_[c].source;
+    balance_.storage += stored;
+    balance_.skeleton += skeleton;
+    balance_.projection -= projection_[c];
+    balance_.magnitude += std::abs(stored) + std::abs(skeleton) + std::abs(projection_[c]);
+  }
+  const auto boundary = cells_.boundary_faces();
+  const std::size_t interior = cells_.interior_faces().size();
+  discharge_.surface = 0;
+  std::fill(discharge_.boundary.begin(), discharge_.boundary.end(), 0.0);
+  for (std::size_t b = 0; b < boundary.size(); ++b) {
+    const double q = -flow_[interior + b];
+    balance_.outflow += q;
+    balance_.magnitude += std::abs(q);
+    (boundary[b].boundary < 0 ? discharge_.surface : discharge_.boundary[boundary[b].boundary]) += q;
+  }
+}
+
+// ---- steady state
+
+// Each step starts from the last one; its length grows as long as the iteration converges easily. Steady when
+// storage is no longer part of the balance.
+template <int D>
+StepReport UnsaturatedField<D>::steady(const UnsaturatedStep& given) {
+  constexpr int kSteps = 200;
+  constexpr double kGrowth = 10, kLongest = 1e16;  // [s]
+  if (!given.velocity.empty())
+    throw std::logic_error("UnsaturatedField: steady flow needs a resting skeleton");
+  UnsaturatedStep step = given;
+  StepReport total;
+  for (int i = 0; i < kSteps; ++i) {
+    const StepReport r = solve(step);
+    total.iterations += r.iterations;
+    total.linear_iterations += r.linear_iterations;
+    total.residual = r.residual, total.largest_change = r.largest_change;
+    total.failure = r.failure;
+    if (!r.converged) {
+      step.dt /= kGrowth * kGrowth;
+      if (step.dt < 1e-6 * given.dt) return total;
+      continue;
+    }
+    double storing = 0;
+    for (int c = 0; c < cells_.count(); ++c)
+      storing += std::abs(cell_[c].pores * (s_now_[c] - s_old_[c])) +
+                 std::abs(cell_[c].elastic * s_now_[c] * (p_now_[c] - p_old_[c]));
+    if (storing <= 10 * tolerance_ * balance_.magnitude || step.dt >= kLongest) {
+      total.converged = true;
+      return total;
+    }
+    step.dt *= kGrowth;
+  }
+  total.failure = "the steady state was not reached in " + std::to_string(kSteps) + " steps";
+  return total;
+}
+
+// ---- evaluation
+
+template <int D>
+void UnsaturatedField<D>::node_gradient(std::span<const double> field, BoundaryValues values,
+                                        WallNormal walls, std::span<double> out) {
+  require_current(std::min(field.size(), out.size() / kStride));
+  update_gradient_faces();
+  gradient_.evaluate(cells_, gradient_faces_, field, values, walls, out);
+}
+
+template class UnsaturatedField<2>;
+template class UnsaturatedField<3>;
+
+}  // namespace polder::fdm
