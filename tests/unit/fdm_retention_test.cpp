@@ -109,7 +109,8 @@ TEST_CASE("retention curves: derivative, monotony and inverse") {
         CHECK(c.capacity(p) == doctest::Approx(slope).epsilon(2e-5).scale(1e-3 * (s + 1e-3) / d));
       }
       // As far as a saturation in double precision still tells the suction.
-      if (s < r.maximum * (1 - 1e-9) && s > r.residual + 1e-8) CHECK(c.pressure(s) == doctest::Approx(p).epsilon(1e-6));
+      if (s < r.maximum * (1 - 1e-9) && s > r.residual + 1e-8)
+        CHECK(c.pressure(s) == doctest::Approx(p).epsilon(1e-6));
     }
   }
 }
