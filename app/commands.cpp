@@ -7,6 +7,7 @@
 #include "app/digits.hpp"
 #include "app/run.hpp"
 #include "app/size_estimate.hpp"
+#include "app/stability.hpp"
 #include "core/error.hpp"
 
 namespace polder::app {
@@ -123,6 +124,7 @@ const std::vector<Command>& commands() {
         {"--quick", "", "", "Without CASE: only the quick ones, which take seconds.", false},
         {"--junit", "", "FILE", "Write the verdicts as JUnit XML, for CI services.", false}},
        verify_command},
+      stability_command(),
       {"schema",
        "",
        0,

@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "coupling/simulation_run.hpp"
 #include "coupling/stopwatch.hpp"
+#include "coupling/strength_reduction.hpp"
 
 namespace polder::coupling {
 
@@ -74,11 +75,21 @@ void Simulation::Run<D>::visit_relaxation(StateVisitor& v) {
   if (relaxation) relaxation->visit(v);
 }
 
+template <int D>
+StabilityTrial Simulation::Run<D>::try_reduced_strength(double factor, const StabilityOptions& options) {
+  relaxation.reset();
+  laws_set = false;
+  for (auto& body : world->skeleton.bodies())
+    for (int d = 0; d < D; ++d) body->initial_position[d] = body->position[d];  // displacements of the trial
+  return coupling::try_reduced_strength(*world, factor, options, time);
+}
+
 #define POLDER_INSTANTIATE(D)                                               \
   template void Simulation::Run<D>::throw_unrest(const std::string&) const; \
   template void Simulation::Run<D>::begin_relaxation();                     \
   template void Simulation::Run<D>::relax_step();                           \
-  template void Simulation::Run<D>::visit_relaxation(StateVisitor&);
+  template void Simulation::Run<D>::visit_relaxation(StateVisitor&);        \
+  template StabilityTrial Simulation::Run<D>::try_reduced_strength(double, const StabilityOptions&);
 POLDER_INSTANTIATE(2)
 POLDER_INSTANTIATE(3)
 

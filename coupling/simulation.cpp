@@ -12,6 +12,7 @@
 #include "coupling/simulation_run.hpp"
 #include "coupling/step_limit.hpp"
 #include "coupling/stopwatch.hpp"
+#include "coupling/strength_reduction.hpp"
 
 namespace polder::coupling {
 namespace {
@@ -373,6 +374,9 @@ Timing Simulation::timing() const {
 }
 void Simulation::visit(StateVisitor& v) {
   run_->visit(v);
+}
+StabilityTrial Simulation::try_reduced_strength(double factor, const StabilityOptions& options) {
+  return run_->try_reduced_strength(factor, options);
 }
 
 std::vector<std::string> Simulation::skipped() const {

@@ -74,6 +74,9 @@ struct StageReport {
   std::string ended_by;  // "duration", "equilibrium", "" while running
 };
 
+struct StabilityOptions;  // strength_reduction.hpp
+struct StabilityTrial;
+
 // Wall time by part of the step [s].
 struct Timing {
   double mechanics = 0, water = 0, audit = 0, total = 0;
@@ -130,6 +133,10 @@ class Simulation {
   Timing timing() const;
 
   void visit(StateVisitor& visitor);
+
+  // Leaves its stage and relaxes the present state with its strength divided by the factor
+  // (strength_reduction.hpp, which saves the state before and brings it back).
+  StabilityTrial try_reduced_strength(double factor, const StabilityOptions& options);
 
  private:
   struct Base;

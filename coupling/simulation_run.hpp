@@ -28,6 +28,7 @@ struct Simulation::Base {
   virtual PointFrame points(const std::vector<std::string>& fields) const = 0;
   virtual CellFrame water_cells() const = 0;
   virtual void visit(StateVisitor& visitor) = 0;
+  virtual StabilityTrial try_reduced_strength(double factor, const StabilityOptions& options) = 0;
 
   Scene scene;
   // Time control; all of it is part of a checkpoint.
@@ -79,6 +80,7 @@ struct Simulation::Run final : Simulation::Base {
   PointFrame points(const std::vector<std::string>& fields) const override;
   CellFrame water_cells() const override;
   void visit(StateVisitor& visitor) override;
+  StabilityTrial try_reduced_strength(double factor, const StabilityOptions& options) override;
 
  private:
   void begin_stage();

@@ -154,7 +154,8 @@ void BoundarySet<D>::apply(double time, double dt, const Reals& sums, Reals& v, 
       slip = std::sqrt(slip);
       if (slip == 0) continue;
       keep();
-      const double share = sticking_ ? 0.0 : std::max(0.0, 1 - spec.coefficient * n.pressed / slip);
+      const double share =
+          sticking_ ? 0.0 : std::max(0.0, 1 - friction_share_ * spec.coefficient * n.pressed / slip);
       for (int d = 0; d < D; ++d)
         if (!driven[d]) u[d] *= share;
       account(n.spec);

@@ -51,6 +51,8 @@ class BoundarySet {
   // Friction boundaries hold without slip while this is set (a stage that builds up initial stress).
   void set_sticking(bool sticking) { sticking_ = sticking; }
 
+  // Coefficients of friction count this many times themselves (strength reduction).
+  void set_friction_share(double share) { friction_share_ = share; }
   // Walls with a prescribed velocity stand still while this is set (relaxation, where no time passes).
   void set_still(bool still) { still_ = still; }
 
@@ -88,6 +90,7 @@ class BoundarySet {
   std::vector<std::uint8_t> sealed_;
   bool sticking_ = false;
   bool still_ = false;
+  double friction_share_ = 1;
 };
 
 extern template class BoundarySet<2>;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "tests/verify/memory_state.hpp"
+#include "coupling/memory_state.hpp"
 
 namespace polder::verify {
 namespace {
@@ -37,7 +37,7 @@ bool grows(const Block& block, double dt, int steps) {
   Scene scene = scene_of(block);
   scene.numerics.time_step = dt;
   Simulation simulation(scene);
-  MemoryState state;
+  coupling::MemoryState state;
   state.save(simulation);
   const double speed = kSpeed * block.choice.cell / wave_step(block);
   std::uint64_t random = 1;

@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "tests/verify/memory_state.hpp"
+#include "coupling/memory_state.hpp"
 
 namespace polder::verify {
 
@@ -127,7 +127,7 @@ double checkerboard_left(const Choice& c, int steps) {
   s.water.initial = WaterSpec::Initial::field;
   s.water.initial_pressure = 1;
   Simulation sim(s);
-  MemoryState state;
+  coupling::MemoryState state;
   state.save(sim);
   // Slots of a block are numbered row by row in squares of an even side, so the parity of a cell is that of
   // its place in the block.

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/threads.hpp"
-#include "tests/verify/memory_state.hpp"
+#include "coupling/memory_state.hpp"
 #include "tests/verify/one_layer_rest.hpp"
 
 using namespace polder;
@@ -41,7 +41,7 @@ Scene scene_with_everything(const Choice& c, double duration) {
 }
 
 struct Ended {
-  MemoryState state;
+  coupling::MemoryState state;
   long steps = 0;
   int sorts = 0;  // the points were put in order again
 };
@@ -83,7 +83,7 @@ TEST_CASE("wet soil: a run cut at any step goes on with the same bits") {
     for (int cut = 0; cut < 4; ++cut) {
       const long at = 1 + static_cast<long>(random() % (whole.steps - 1));
       CAPTURE(at);
-      MemoryState state;
+      coupling::MemoryState state;
       {
         Simulation first(scene);
         while (first.steps() < at) first.step();
@@ -91,7 +91,7 @@ TEST_CASE("wet soil: a run cut at any step goes on with the same bits") {
       }
       Simulation second(scene);
       state.load(second);
-      MemoryState again;
+      coupling::MemoryState again;
       again.save(second);
       CHECK(again.differences(state).empty());
       while (!second.finished()) second.step();

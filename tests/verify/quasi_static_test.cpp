@@ -2,8 +2,8 @@
 #include <doctest/doctest.h>
 
 #include "core/error.hpp"
+#include "coupling/memory_state.hpp"
 #include "coupling/simulation.hpp"
-#include "tests/verify/memory_state.hpp"
 #include "tests/verify/quasi_static_scenes.hpp"
 
 using namespace polder;
@@ -126,7 +126,7 @@ TEST_CASE("A relaxation that goes on from a checkpoint gives the same bits") {
   Simulation whole(scene), first(scene), second(scene);
   run_to_end(whole);
   for (int i = 0; i < 73; ++i) first.step();
-  MemoryState state;
+  coupling::MemoryState state;
   state.save(first);
   state.load(second);
   run_to_end(second);

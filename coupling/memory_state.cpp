@@ -1,8 +1,8 @@
-#include "tests/verify/memory_state.hpp"
+#include "coupling/memory_state.hpp"
 
 #include <cstring>
 
-namespace polder::verify {
+namespace polder::coupling {
 
 void MemoryState::reals(const std::string& name, Reals& values) {
   if (reading_)
@@ -56,4 +56,4 @@ std::vector<std::string> MemoryState::differences(const MemoryState& other) cons
   return names;
 }
 
-}  // namespace polder::verify
+}  // namespace polder::coupling

@@ -7,11 +7,9 @@
 
 #include "coupling/simulation.hpp"
 
-namespace polder::verify {
+namespace polder::coupling {
 
-using coupling::Simulation;
-
-class MemoryState final : public coupling::StateVisitor {
+class MemoryState final : public StateVisitor {
  public:
   bool reading() const override { return reading_; }
   void reals(const std::string& name, Reals& values) override;
@@ -33,4 +31,4 @@ class MemoryState final : public coupling::StateVisitor {
   bool reading_ = false;
 };
 
-}  // namespace polder::verify
+}  // namespace polder::coupling

@@ -1,0 +1,104 @@
+// `polder stability` from the command line, and the slip surface it draws.
+#include <doctest/doctest.h>
+
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "app/program.hpp"
+#include "app/slip_surface.hpp"
+#include "io/csv.hpp"
+
+using namespace polder;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string kCase = std::string(POLDER_SOURCE_DIR) + "/cases/slope-acads/slope-acads.toml";
+
+struct Scratch {
+  fs::path path = fs::temp_directory_path() / ("polder_stability_test_" + std::to_string(::getpid()));
+  Scratch() { fs::remove_all(path); }
+  ~Scratch() { fs::remove_all(path); }
+};
+
+int polder_program(const std::vector<std::string>& words, std::string* err = nullptr) {
+  std::ostringstream out, errors;
+  const int code = app::run_program(words, out, errors);
+  if (err != nullptr) *err = errors.str();
+  return code;
+}
+
+nlohmann::json json_of(const fs::path& file) {
+  std::ifstream in(file);
+  REQUIRE(in.good());
+  return nlohmann::json::parse(in);
+}
+
+}  // namespace
+
+TEST_CASE("a slip surface is the line between what moves and what rests") {
+  // A circle about (4, 12) through the ground: its inside turns by a hundredth.
+  constexpr double kSpacing = 0.25, kRadius = 7;
+  std::vector<double> positions, motion, area;
+  for (int i = 0; i < 64; ++i)
+    for (int j = 0; j < 40; ++j) {
+      const double x = kSpacing * (i + 0.5), y = kSpacing * (j + 0.5), r = std::hypot(x - 4, y - 12);
+      positions.insert(positions.end(), {x, y, 0});
+      motion.push_back(r < kRadius ? 0.01 * r : 1e-4);
+      area.push_back(kSpacing * kSpacing);
+    }
+  const app::SlipSurface slip = app::find_slip_surface(positions, motion, area, 0.5);
+  REQUIRE(slip.line.size() > 10);
+  for (std::size_t i = 1; i + 1 < slip.line.size(); ++i)
+    CHECK(std::abs(std::hypot(slip.line[i][0] - 4, slip.line[i][1] - 12) - kRadius) < 0.3);
+  CHECK(slip.line.front()[1] >= slip.line.back()[1]);
+  double inside = 0;
+  for (std::size_t p = 0; p < motion.size(); ++p)
+    if (motion[p] > 1e-3) inside += area[p];
+  CHECK(slip.area == doctest::Approx(inside).epsilon(0.1));
+
+  CHECK(app::find_slip_surface(positions, std::vector<double>(motion.size(), 0.0), area, 0.5).line.empty());
+}
+
+TEST_CASE("stability of a case and of the folder of a run") {
+  const Scratch scratch;
+  const std::string folder = scratch.path / "case", run = scratch.path / "run";
+  REQUIRE(polder_program({"stability", kCase, "-o", folder, "--set", "grid.cell=2", "--threads", "1"}) == 0);
+  const auto found = json_of(fs::path(folder) / "stability.json");
+  const double factor = found.at("factor_of_safety");
+  CHECK(factor > 0.9);
+  CHECK(factor < 1.2);
+  CHECK(found.at("bracket").at("stands").get<double>() < factor);
+  CHECK(found.at("bracket").at("fails").get<double>() <=
+        found.at("bracket").at("stands").get<double>() * 1.005);
+  CHECK(found.at("mechanism").at("moving_area").get<double>() > 20);
+  const CsvTable trials(fs::path(folder) / "trials.csv"), slip(fs::path(folder) / "slip_surface.csv");
+  CHECK(trials.rows() == found.at("trials").size());
+  // From the crest down to the foot of the slope, 20 m <= x <= 40 m.
+  CHECK(slip.column("x[m]").front() < 20);
+  CHECK(slip.column("x[m]").back() > 32);
+  CHECK(slip.column("y[m]").front() > slip.column("y[m]").back());
+  CHECK(fs::exists(fs::path(folder) / "soil_000000.hdf"));
+
+  REQUIRE(polder_program({"run", kCase, "-o", run, "--quiet", "--set", "grid.cell=2", "--threads", "1"}) ==
+          0);
+  REQUIRE(polder_program({"stability", run, "--threads", "1"}) == 0);
+  CHECK(json_of(fs::path(run) / "stability" / "stability.json").at("trials") == found.at("trials"));
+}
+
+TEST_CASE("what stability refuses") {
+  const Scratch scratch;
+  const std::string folder = scratch.path;
+  std::string err;
+  CHECK(polder_program({"stability", kCase, "-o", folder, "--stage", "intial"}, &err) == 2);
+  CHECK(err.find("did you mean \"initial\"?") != std::string::npos);
+  CHECK(polder_program({"stability", kCase, "-o", folder, "--stage", "initial", "--at", "1"}) == 2);
+  fs::create_directories(scratch.path / "empty");
+  CHECK(polder_program({"stability", folder + "/empty"}, &err) == 2);
+  CHECK(err.find("holds no checkpoint.h5") != std::string::npos);
+}
