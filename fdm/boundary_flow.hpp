@@ -3,7 +3,8 @@
 // The flow that a surface pressure p_b drives into the cell with pressure p_c at the distance d is
 //   Q(p_b) = A (k k_r / gamma_w) [ (p_b - p_c) / d + rho_w g.m ],   m the inward normal;
 // k_r that of p_b where water enters (a dry coarse cell behind a wet surface would otherwise keep rain out
-// that the soil takes), the mean of surface and cell where it leaves.
+// that the soil takes), the logarithmic mean of surface and cell where it leaves: the mean over p if k_r is
+// exponential between the two, so that evaporation to a dry surface does not depend on the size of the cell.
 // A face then is closed, has a pressure, has a flow, or is complementary: it takes the potential inflow R as
 // long as the surface pressure stays between two limits,
 //   Q = max( min( R, Q(upper) ), Q(lower) ),
@@ -13,6 +14,8 @@
 // kept.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "fdm/water_cells.hpp"
@@ -36,13 +39,20 @@ struct BoundaryFlow {
   bool prescribed = false;
 };
 
+// (a - b) / (ln a - ln b), for a, b >= 0.
+inline double logarithmic_mean(double a, double b) {
+  const double low = std::max(std::min(a, b), std::numeric_limits<double>::min()), high = std::max(a, b);
+  const double excess = high / low - 1;
+  return excess < 1e-4 ? 0.5 * (low + high) : (high - low) / std::log1p(excess);
+}
+
 // kappa: saturated A k / (gamma_w d) [m3/(Pa s)]; p, relative: pressure and k_r of the cell.
 inline BoundaryFlow boundary_flow(const BoundaryLaw& law, double kappa, double p, double relative) {
   const auto driven = [&](double surface, double surface_relative) {
     const double difference = surface - p + law.gravity;
-    const double leaving = law.upstream ? relative : 0.5 * (surface_relative + relative);
-    const double conductance = kappa * (difference > 0 ? surface_relative : leaving);
-    return BoundaryFlow{conductance * difference, conductance, surface, true};
+    double k = surface_relative;
+    if (difference < 0) k = law.upstream ? relative : logarithmic_mean(surface_relative, relative);
+    return BoundaryFlow{kappa * k * difference, kappa * k, surface, true};
   };
   switch (law.kind) {
     case BoundaryLaw::Kind::closed:

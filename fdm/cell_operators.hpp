@@ -44,13 +44,14 @@ double cell_outflow(const ActiveCell<D>& cell, std::span<const double> velocity)
   return sum;
 }
 
-// Sets of active cells joined by interior faces.
+// Sets of active cells joined by interior faces, those left out that are `blocked` (a flag each; empty:
+// none).
 struct Basins {
   std::vector<int> of_cell;     // set each active cell belongs to
   std::vector<int> first_cell;  // lowest cell of each set
 };
 template <int D>
-Basins find_basins(const WaterCells<D>& cells) {
+Basins find_basins(const WaterCells<D>& cells, std::span<const unsigned char> blocked = {}) {
   const int n = cells.count();
   std::vector<int> root(n);
   for (int c = 0; c < n; ++c) root[c] = c;
@@ -58,7 +59,10 @@ Basins find_basins(const WaterCells<D>& cells) {
     while (root[c] != c) c = root[c] = root[root[c]];
     return c;
   };
-  for (const InteriorFace<D>& f : cells.interior_faces()) {
+  const auto interior = cells.interior_faces();
+  for (std::size_t i = 0; i < interior.size(); ++i) {
+    if (!blocked.empty() && blocked[i]) continue;
+    const InteriorFace<D>& f = interior[i];
     const int a = find(f.low), b = find(f.high);
     root[std::max(a, b)] = std::min(a, b);
   }

@@ -22,13 +22,16 @@ void refuse_unsaturated(const WaterConditions<D>& conditions) {
   for (const WaterBoundary<D>& b : conditions.boundaries)
     if (b.kind == Kind::flux || b.kind == Kind::atmosphere || b.seepage_above || b.side == kFreeSurface)
       throw std::logic_error("PressureField: water boundary '" + b.name + "' needs the unsaturated equation");
+  if (!conditions.wells.empty() || !conditions.drains.empty() || !conditions.sheets.empty())
+    throw std::logic_error("PressureField: wells, drains and sheets need the unsaturated equation");
 }
 
 }  // namespace
 
 double Discharge::total() const {
   double sum = surface;
-  for (double q : boundary) sum += q;
+  for (const std::vector<double>* list : {&boundary, &well, &drain})
+    for (double q : *list) sum += q;
   return sum;
 }
 

@@ -57,6 +57,8 @@ struct PressureStep {
 struct Discharge {
   double surface = 0;            // its free or submerged surface
   std::vector<double> boundary;  // each of WaterConditions::boundaries
+  std::vector<double> well;      // each of WaterConditions::wells, empty where saturated soil has none
+  std::vector<double> drain;     // each of WaterConditions::drains
   double total() const;
 };
 

@@ -32,9 +32,9 @@ UnsaturatedField<D>::UnsaturatedField(const WaterCells<D>& cells, const WaterPro
   double g2 = 0;
   for (double g : water.gravity) g2 += g * g;
   // Suction head is measured in the weight of water; without gravity in that of the earth's surface.
-  const double unit_weight = water.density * (g2 > 0 ? std::sqrt(g2) : 9.81);
+  unit_weight_ = water.density * (g2 > 0 ? std::sqrt(g2) : 9.81);
   for (const Soil<D>& s : soils_) {
-    curves_.emplace_back(s.retention, unit_weight);
+    curves_.emplace_back(s.retention, unit_weight_);
     for (double a : s.anisotropy)
       if (!(a > 0)) throw InputError("unsaturated flow: the factors of anisotropy must be positive");
   }
@@ -126,8 +126,11 @@ void UnsaturatedField<D>::refresh() {
   laws_.assign(faces - interior, {});
   discharge_ = {};
   discharge_.boundary.assign(cells_.conditions().boundaries.size(), 0);
+  discharge_.well.assign(cells_.conditions().wells.size(), 0);
+  discharge_.drain.assign(cells_.conditions().drains.size(), 0);
   balance_ = {};
-  basins_ = find_basins(cells_);
+  find_lines();
+  basins_ = find_basins(cells_, blocked_);
 
   Connectivity<D> connectivity;
   connectivity.cells.reserve(n);
@@ -189,6 +192,9 @@ double UnsaturatedField<D>::advance() {
   });
   for (int c = 0; c < cells_.count(); ++c) largest = std::max(largest, std::abs(image_[c] - p_now_[c]));
   acceleration_.next(p_now_, image_, diagonal_);
+  const double driest = -unit_weight_ * RetentionCurve::kDriestSuction;
+  for (int c = 0; c < cells_.count(); ++c)
+    if (!saturated_[c]) p_now_[c] = std::max(p_now_[c], driest);
   return largest;
 }
 
@@ -206,7 +212,13 @@ StepReport UnsaturatedField<D>::solve(const UnsaturatedStep& step) {
   relaxation_ = 1;
   for (int i = 0;; ++i) {
     assemble();
-    const Residual residual = gather();
+    Residual residual;
+    try {
+      residual = gather();
+    } catch (const NumericalError& error) {
+      report.failure = error.what();
+      return report;
+    }
     report.residual = residual.relative();
     if (!std::isfinite(residual.sum)) {
       report.failure = "the pressure is not a number";
@@ -275,20 +287,28 @@ void UnsaturatedField<D>::accept() {
     balance_.magnitude += std::abs(q);
     (boundary[b].boundary < 0 ? discharge_.surface : discharge_.boundary[boundary[b].boundary]) += q;
   }
+  std::fill(discharge_.well.begin(), discharge_.well.end(), 0.0);
+  std::fill(discharge_.drain.begin(), discharge_.drain.end(), 0.0);
+  for (const LineSink& l : lines_) {
+    balance_.outflow += l.flow;
+    balance_.magnitude += std::abs(l.flow);
+    (l.drain ? discharge_.drain : discharge_.well)[l.owner] += l.flow;
+  }
 }
 
 // ---- steady state
 
-// Each step starts from the last one; its length grows as long as the iteration converges easily. Steady when
-// storage is no longer part of the balance.
+// Each step starts from the last one; its length grows the faster the more easily the iteration converges,
+// and slowly where a longer one has failed. Steady when storage is no longer part of the balance.
 template <int D>
 StepReport UnsaturatedField<D>::steady(const UnsaturatedStep& given) {
-  constexpr int kSteps = 200;
-  constexpr double kGrowth = 10, kLongest = 1e16;  // [s]
+  constexpr int kSteps = 300;
+  constexpr double kLongest = 1e16;  // [s]
   if (!given.velocity.empty())
     throw std::logic_error("UnsaturatedField: steady flow needs a resting skeleton");
   UnsaturatedStep step = given;
   StepReport total;
+  double failed = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kSteps; ++i) {
     const StepReport r = solve(step);
     total.iterations += r.iterations;
@@ -296,8 +316,9 @@ StepReport UnsaturatedField<D>::steady(const UnsaturatedStep& given) {
     total.residual = r.residual, total.largest_change = r.largest_change;
     total.failure = r.failure;
     if (!r.converged) {
-      step.dt /= kGrowth * kGrowth;
-      if (step.dt < 1e-6 * given.dt) return total;
+      if (step.dt < 1e-8 * given.dt) return total;
+      failed = step.dt;
+      step.dt *= 0.1;
       continue;
     }
     double storing = 0;
@@ -308,7 +329,8 @@ StepReport UnsaturatedField<D>::steady(const UnsaturatedStep& given) {
       total.converged = true;
       return total;
     }
-    step.dt *= kGrowth;
+    const double growth = r.iterations <= 10 ? 10 : r.iterations <= 20 ? 4 : 2;
+    step.dt *= step.dt * growth < failed ? growth : 1.5;
   }
   total.failure = "the steady state was not reached in " + std::to_string(kSteps) + " steps";
   return total;

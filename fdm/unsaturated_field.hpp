@@ -37,6 +37,7 @@
 #include "fdm/pressure_field.hpp"
 #include "fdm/retention.hpp"
 #include "fdm/water_cells.hpp"
+#include "fdm/water_lines.hpp"
 
 namespace polder::fdm {
 
@@ -145,6 +146,16 @@ class UnsaturatedField {
     double elastic;  // vf V (n / K_w + c_s) / dt [m3/(Pa s)]
     double source;   // (D v*)_c [m3/s]
   };
+  // A well or drain in one cell: takes conductance * (p - pressure), not less than `least`, not more than
+  // `most` [m3/s].
+  struct LineSink {
+    int cell;
+    double share;
+    int owner;  // number of the well or drain
+    bool drain;
+    double pressure = 0, conductance = 0, least = 0, most = 0;
+    double flow = 0;  // at the present pressure
+  };
   struct Residual {
     double sum = 0, scale = 0, rounding = 0;
     bool small(double tolerance) const { return sum <= tolerance * scale + rounding; }
@@ -154,7 +165,10 @@ class UnsaturatedField {
   void prepare(const UnsaturatedStep& step);
   void prepare_soils(const UnsaturatedStep& step);
   void prepare_faces(const UnsaturatedStep& step);
+  void prepare_lines();
+  void find_lines();
   void assemble();
+  void assemble_lines();
   Residual gather();
   void pin_closed_basins();
   double changed_pressure(int c, double d) const;
@@ -167,6 +181,7 @@ class UnsaturatedField {
 
   const WaterCells<D>& cells_;
   WaterProperties<D> water_;
+  double unit_weight_ = 0;  // [N/m3]
   std::vector<Soil<D>> soils_;
   std::vector<RetentionCurve> curves_;
   std::unique_ptr<LinearSolver<D>> solver_;
@@ -194,7 +209,7 @@ class UnsaturatedField {
   Basins basins_;
   std::vector<double> basin_sink_, basin_scale_;
   Reals rounding_;            // what rounding may leave of each cell's residual [m3/s]
-  double rounding_norm_ = 0;  // all of them, in the norm of Accuracy
+  double rounding_norm_ = 0;  // of the conductances alone, in the norm of Accuracy
 
   // Faces.
   Reals kappa_;        // k A / (gamma_w d) saturated [m3/(Pa s)], interior then boundary
@@ -204,7 +219,11 @@ class UnsaturatedField {
   Reals conductance_;  // derivative of flow_ [m3/(Pa s)]
   double chi_ = 0;
   bool inertia_ = false;
-  std::vector<BoundaryLaw> laws_;  // of the boundary faces
+  std::vector<BoundaryLaw> laws_;       // of the boundary faces
+  std::vector<unsigned char> blocked_;  // interior faces that a sheet closes; empty: none
+
+  std::vector<LineSink> lines_;
+  Reals line_flow_, line_conductance_;  // of the cells; empty without wells and drains
 
   Discharge discharge_;
   WaterBalance balance_;

@@ -17,6 +17,14 @@ constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
 // rounding (as in pressure_field.cpp).
 constexpr double kClosedBasin = 1e-11;
 
+// Sink in the matrix over the links of the cell: keeps pivots positive where soil is so dry that cells
+// between are coupled to the rest by less than rounding. It slows such cells down and has no part in the
+// balance.
+constexpr double kRegular = 1e-12;
+
+// Conductance of a drain whose own is infinite, over that of its cell's faces in saturated soil.
+constexpr double kOpenLine = 1e4;
+
 }  // namespace
 
 // ---- before the iteration
@@ -101,6 +109,9 @@ void UnsaturatedField<D>::prepare_faces(const UnsaturatedStep& step) {
     kappa_[i] =
         harmonic_mean(conductivity(f.low, f.axis), conductivity(f.high, f.axis)) * f.area * per_spacing;
   });
+  for (std::size_t i = 0; i < blocked_.size(); ++i)
+    if (blocked_[i]) kappa_[i] = 0;
+  prepare_lines();
   update_gradient_faces();
   if (!inertia_) return;
 
@@ -132,6 +143,59 @@ void UnsaturatedField<D>::prepare_faces(const UnsaturatedStep& step) {
   }
 }
 
+template <int D>
+void UnsaturatedField<D>::find_lines() {
+  const WaterConditions<D>& conditions = cells_.conditions();
+  blocked_ = blocked_faces<D>(cells_, conditions.sheets);
+  lines_.clear();
+  const auto add = [&](const std::vector<Point<D>>& points, int owner, bool drain) {
+    for (const CrossedCell& c : crossed_cells<D>(cells_, points))
+      lines_.push_back({.cell = c.cell, .share = c.share, .owner = owner, .drain = drain});
+  };
+  for (int i = 0; i < static_cast<int>(conditions.wells.size()); ++i)
+    add(conditions.wells[i].points, i, false);
+  for (int i = 0; i < static_cast<int>(conditions.drains.size()); ++i)
+    add(conditions.drains[i].points, i, true);
+  line_flow_.assign(lines_.empty() ? 0 : cells_.count(), 0);
+  line_conductance_.assign(line_flow_.size(), 0);
+}
+
+template <int D>
+void UnsaturatedField<D>::prepare_lines() {
+  constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+  for (LineSink& l : lines_) {
+    double links = 0;
+    for (int face : cells_.cells()[l.cell].faces)
+      if (face >= 0) links += kappa_[face];
+    if (l.drain) {
+      const WaterDrain<D>& d = cells_.conditions().drains[l.owner];
+      l.pressure = d.pressure;
+      l.conductance = std::isfinite(d.conductance) ? d.conductance * l.share : kOpenLine * links;
+      l.least = 0, l.most = kUnlimited;
+    } else {
+      const WaterWell<D>& w = cells_.conditions().wells[l.owner];
+      const double rate = w.rate * l.share;
+      const bool limited = std::isfinite(w.limiting_pressure);
+      l.pressure = w.limiting_pressure;
+      l.conductance = limited ? links : 0;
+      l.least = limited ? std::min(rate, 0.0) : rate;
+      l.most = limited ? std::max(rate, 0.0) : rate;
+    }
+  }
+}
+
+template <int D>
+void UnsaturatedField<D>::assemble_lines() {
+  std::fill(line_flow_.begin(), line_flow_.end(), 0.0);
+  std::fill(line_conductance_.begin(), line_conductance_.end(), 0.0);
+  for (LineSink& l : lines_) {
+    const double driven = l.conductance > 0 ? l.conductance * (p_now_[l.cell] - l.pressure) : l.most;
+    l.flow = std::clamp(driven, l.least, l.most);
+    line_flow_[l.cell] += l.flow;
+    if (driven > l.least && driven < l.most) line_conductance_[l.cell] += l.conductance;
+  }
+}
+
 // Boundary faces as the gradient of p+ sees them: the soil's surface is free of p+ wherever it is not under
 // water, whether water passes or not; on the sides of the grid only where a pressure acts.
 template <int D>
@@ -158,6 +222,7 @@ void UnsaturatedField<D>::assemble() {
   const bool upstream = weighting_ == FaceWeighting::upstream;
   for (std::size_t s = 0; s < curves_.size(); ++s)
     curves_[s].evaluate(cells_of_soil_[s], p_now_, s_now_, capacity_, kr_);
+  if (!lines_.empty()) assemble_lines();
   if (inertia_) for_each(cells_.count(), [&](int c) { plus_change_[c] = positive(c) - positive_old_[c]; });
 
   for_each(n_interior, [&](int i) {
@@ -210,9 +275,10 @@ typename UnsaturatedField<D>::Residual UnsaturatedField<D>::gather() {
       if (both) projection += side % 2 ? correction_[face] : -correction_[face];
       if (wet(c) && !both) sink += lambda_[face];
     }
+    if (!line_flow_.empty()) balance -= line_flow_[c], sink += line_conductance_[c];
     projection_[c] = s_now_[c] * projection;
     rhs_[c] = balance + projection_[c];
-    sink_[c] = sink;
+    sink_[c] = sink + links > 0 ? sink + kRegular * links : 1;  // 1: a cell so dry that nothing moves in it
     diagonal_[c] = sink + links;
     rounding_[c] = kRounding * (diagonal_[c] * std::abs(p_now_[c]) + gravity + k.pores * s_now_[c]);
   });
@@ -226,7 +292,7 @@ typename UnsaturatedField<D>::Residual UnsaturatedField<D>::gather() {
     total.scale += std::abs(stored) + std::abs(s_now_[c] * k.source);
     total.rounding += rounding_[c];
     if (diagonal_[c] > 0) {
-      norm2 += rounding_[c] * rounding_[c] / diagonal_[c];
+      norm2 += diagonal_[c] * p_now_[c] * p_now_[c];
     } else if (rhs_[c] != 0) {
       std::string place;
       for (double x : cells_.centre(cells[c].index)) place += (place.empty() ? "" : ", ") + std::to_string(x);
@@ -234,8 +300,9 @@ typename UnsaturatedField<D>::Residual UnsaturatedField<D>::gather() {
                            ") m is coupled to nothing: no conductivity, no storage and no nodal mass");
     }
   }
+  for (const LineSink& l : lines_) total.scale += std::abs(l.flow);
   for (std::size_t b = 0; b < laws_.size(); ++b) total.scale += std::abs(flow_[n_interior + b]);
-  rounding_norm_ = std::sqrt(norm2);
+  rounding_norm_ = 0.5 * kRounding * std::sqrt(norm2);
   return total;
 }
 

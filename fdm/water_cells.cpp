@@ -11,6 +11,14 @@ namespace {
 // Whether two sets of conditions differ only in their values, not in where they apply.
 template <int D>
 bool same_geometry(const WaterConditions<D>& a, const WaterConditions<D>& b) {
+  const auto same_points = [](const auto& x, const auto& y) { return x.points == y.points; };
+  const auto same_sheets = [](const WaterSheet<D>& x, const WaterSheet<D>& y) {
+    return x.points == y.points && x.bottom == y.bottom && x.top == y.top;
+  };
+  if (!std::equal(a.wells.begin(), a.wells.end(), b.wells.begin(), b.wells.end(), same_points) ||
+      !std::equal(a.drains.begin(), a.drains.end(), b.drains.begin(), b.drains.end(), same_points) ||
+      !std::equal(a.sheets.begin(), a.sheets.end(), b.sheets.begin(), b.sheets.end(), same_sheets))
+    return false;
   return std::equal(a.boundaries.begin(), a.boundaries.end(), b.boundaries.begin(), b.boundaries.end(),
                     [](const WaterBoundary<D>& x, const WaterBoundary<D>& y) {
                       return x.side == y.side && x.kind == y.kind && x.from == y.from && x.to == y.to &&

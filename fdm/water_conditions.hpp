@@ -6,8 +6,8 @@
 // own free surface is at atmospheric pressure where soil is saturated throughout, and a seepage face (water
 // may leave, not enter) where it need not be.
 //
-// Seepage faces, flux, atmosphere and conditions named on the free surface need the unsaturated equation
-// (fdm/unsaturated_field.hpp); the saturated one (fdm/pressure_field.hpp) refuses them.
+// Seepage faces, flux, atmosphere, conditions named on the free surface, wells, drains and sheets need the
+// unsaturated equation (fdm/unsaturated_field.hpp); the saturated one (fdm/pressure_field.hpp) refuses them.
 #pragma once
 
 #include <limits>
@@ -54,6 +54,36 @@ struct WaterBoundary {
   }
 };
 
+// A line through the soil that takes water out at a given rate (or puts it in, where the rate is negative).
+template <int D>
+struct WaterWell {
+  std::string name;
+  std::vector<Point<D>> points;  // the line's corners; a single one: the cell it lies in
+  double rate = 0;               // of the whole well, outwards [m3/s]
+  // Pressure in the well below which it takes no water, or above which it gives none; unlimited where not
+  // finite [Pa]. Between cell and well water meets the resistance of the cell's faces in saturated soil.
+  double limiting_pressure = -std::numeric_limits<double>::infinity();
+};
+
+// A line through the soil that takes water where the pressure exceeds its own, and never gives any.
+template <int D>
+struct WaterDrain {
+  std::string name;
+  std::vector<Point<D>> points;
+  double pressure = 0;  // [Pa]
+  // Flow per pressure excess of the whole drain [m3/(Pa s)]; infinite: its cells do not exceed the pressure.
+  double conductance = std::numeric_limits<double>::infinity();
+};
+
+// A thin wall through which no water passes. In space it stands upright over its line between two heights.
+template <int D>
+struct WaterSheet {
+  std::string name;
+  std::vector<Point<D>> points;
+  double bottom = -std::numeric_limits<double>::infinity();  // [m], in space only
+  double top = std::numeric_limits<double>::infinity();
+};
+
 template <int D>
 struct WaterConditions {
   double unit_weight = 9810;  // of water [N/m3]
@@ -61,6 +91,9 @@ struct WaterConditions {
   double outside_level = -std::numeric_limits<double>::infinity();
   // Those on one side of the grid must not overlap; on the free surface the first one that fits counts.
   std::vector<WaterBoundary<D>> boundaries;
+  std::vector<WaterWell<D>> wells;
+  std::vector<WaterDrain<D>> drains;
+  std::vector<WaterSheet<D>> sheets;
 };
 
 }  // namespace polder::fdm
