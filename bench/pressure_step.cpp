@@ -1,5 +1,5 @@
 // Time of one pressure step on a levee-shaped mask, by solver and number of cells: the measurement behind
-// kDirectLimit in fdm/linear_system.hpp. Every step has new masses, velocities and conductivities (contrast
+// kDirectCells in fdm/solver_choice.cpp. Every step has new masses, velocities and conductivities (contrast
 // 3 or 1e4); the mask stands. Columns in milliseconds, the fastest of the repetitions.
 //   bench_pressure_step [repetitions = 200]
 #include <algorithm>

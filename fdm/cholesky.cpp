@@ -23,10 +23,13 @@ struct Cholesky::Impl {
   std::vector<int> diagonal_at;  // position of each unknown's diagonal in the values of `matrix`
   std::vector<int> pair_at;      // position of each pair
 
-  Impl() {
+  CholeskyMethod method;
+  bool factorised = false;  // with the values of `matrix`
+
+  explicit Impl(CholeskyMethod m) : method(m) {
     cholmod_start(&common);
     common.print = 0;
-    common.supernodal = CHOLMOD_SIMPLICIAL;
+    common.supernodal = m.supernodal ? CHOLMOD_SUPERNODAL : CHOLMOD_SIMPLICIAL;
     common.final_ll = 0;
     common.nmethods = 1;
     common.error_handler = nullptr;
@@ -83,7 +86,7 @@ struct Cholesky::Impl {
   }
 };
 
-Cholesky::Cholesky() : impl_(std::make_unique<Impl>()) {}
+Cholesky::Cholesky(CholeskyMethod method) : impl_(std::make_unique<Impl>(method)) {}
 Cholesky::~Cholesky() = default;
 Cholesky::Cholesky(Cholesky&&) noexcept = default;
 Cholesky& Cholesky::operator=(Cholesky&&) noexcept = default;
@@ -98,6 +101,7 @@ double Cholesky::factor_entries() const {
 void Cholesky::analyse(int n, std::span<const Pair> off_diagonal) {
   Impl& s = *impl_;
   s.release();
+  s.factorised = false;
   s.n = n;
   s.diagonal_at.resize(n);
   s.pair_at.resize(off_diagonal.size());
@@ -106,7 +110,8 @@ void Cholesky::analyse(int n, std::span<const Pair> off_diagonal) {
   for (int i = 0; i < n; ++i) row_of[i] = i;
 
   s.matrix = s.pattern(off_diagonal, row_of);
-  s.common.method[0].ordering = CHOLMOD_AMD;
+  s.common.method[0].ordering =
+      s.method.ordering == CholeskyMethod::Ordering::minimum_degree ? CHOLMOD_AMD : CHOLMOD_METIS;
   s.common.postorder = 1;
   s.factor = cholmod_analyze(s.matrix, &s.common);
   s.check("ordering");
@@ -126,13 +131,21 @@ void Cholesky::analyse(int n, std::span<const Pair> off_diagonal) {
 void Cholesky::factorise(std::span<const double> diagonal, std::span<const double> off_diagonal) {
   Impl& s = *impl_;
   double* const values = static_cast<double*>(s.matrix->x);
-  for (int i = 0; i < s.n; ++i) values[s.diagonal_at[i]] = diagonal[i];
-  for (std::size_t k = 0; k < off_diagonal.size(); ++k) values[s.pair_at[k]] = off_diagonal[k];
+  bool same = s.factorised;
+  const auto set = [&](int at, double value) {
+    same = same && values[at] == value;
+    values[at] = value;
+  };
+  for (int i = 0; i < s.n; ++i) set(s.diagonal_at[i], diagonal[i]);
+  for (std::size_t k = 0; k < off_diagonal.size(); ++k) set(s.pair_at[k], off_diagonal[k]);
+  if (same) return;
+  s.factorised = false;
   cholmod_factorize(s.matrix, s.factor, &s.common);
   s.check("factorisation");
   if (s.common.status == CHOLMOD_NOT_POSDEF || static_cast<int>(s.factor->minor) < s.n)
     throw NumericalError("sparse Cholesky: the matrix is not positive definite (pivot " +
                          std::to_string(s.factor->minor) + " of " + std::to_string(s.n) + ")");
+  s.factorised = true;
 }
 
 void Cholesky::solve(std::span<const double> rhs, std::span<double> x) {

@@ -1,7 +1,7 @@
-// Sparse Cholesky factorisation L D L^T of a symmetric positive definite matrix: CHOLMOD's simplicial code
-// with an approximate minimum degree ordering (Chen, Davis, Hager, Rajamanickam 2008, ACM TOMS 35). The
-// symbolic analysis is kept; the permutation is applied while the values are filled in, so that CHOLMOD
-// factorises without copying.
+// Sparse Cholesky factorisation of a symmetric positive definite matrix with CHOLMOD (Chen, Davis, Hager,
+// Rajamanickam 2008, ACM TOMS 35). The symbolic analysis is kept; the permutation is applied while the values
+// are filled in, so that CHOLMOD factorises without copying; and a factor is kept as long as the values are
+// the same.
 #pragma once
 
 #include <memory>
@@ -10,9 +10,17 @@
 
 namespace polder::fdm {
 
+// How to factorise; which of them is fastest depends on the size (bench/solver_table.cpp).
+struct CholeskyMethod {
+  enum class Ordering { minimum_degree, nested_dissection };
+  Ordering ordering = Ordering::minimum_degree;
+  bool supernodal = false;  // dense blocks with BLAS, L L^T; else column by column, L D L^T
+  bool operator==(const CholeskyMethod&) const = default;
+};
+
 class Cholesky {
  public:
-  Cholesky();
+  explicit Cholesky(CholeskyMethod method = {});
   ~Cholesky();
   Cholesky(Cholesky&&) noexcept;
   Cholesky& operator=(Cholesky&&) noexcept;

@@ -1,10 +1,11 @@
-// Solves the pressure system by sparse Cholesky factorisation: best for small systems, and the oracle for the
-// other. The residual is checked; one step of iterative refinement follows where it is not small enough.
+// Direct solver for the pressure system: sparse Cholesky, refined until the accuracy is reached.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "fdm/cholesky.hpp"
+#include "fdm/defect.hpp"
 #include "fdm/linear_system.hpp"
 
 namespace polder::fdm {
@@ -12,16 +13,17 @@ namespace polder::fdm {
 template <int D>
 class DirectSolver final : public LinearSolver<D> {
  public:
+  // Without a method: the fastest one for the size.
+  explicit DirectSolver(std::optional<CholeskyMethod> method = {}) : method_(method) {}
   const char* name() const override { return "sparse Cholesky"; }
   void analyse(const Connectivity<D>& connectivity) override;
   SolveReport solve(const SystemValues& system, const Accuracy& accuracy, std::span<double> x) override;
 
  private:
-  void residual(const SystemValues& system, std::span<const double> x);
-
+  std::optional<CholeskyMethod> method_;
   Cholesky cholesky_;
-  std::vector<Cholesky::Pair> pairs_;
-  std::vector<double> diagonal_, off_diagonal_, residual_, correction_;
+  Defect defect_;
+  std::vector<double> off_diagonal_;
 };
 
 extern template class DirectSolver<2>;

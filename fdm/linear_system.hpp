@@ -64,15 +64,11 @@ class LinearSolver {
 };
 
 enum class SolverKind {
-  automatic,  // direct up to kDirectLimit cells, else multigrid, direct again should that not converge
+  automatic,  // chosen from size, mask and contrast: fdm/solver_choice.cpp
   direct,     // sparse Cholesky
   multigrid,  // conjugate gradients preconditioned with aggregation multigrid
+  cosine,     // cosine transform, for full boxes whose coefficients vary along one axis only
 };
-
-// Largest system that is solved directly by default. Measured on a levee with new values in every step, where
-// multigrid is the faster one from about 600 cells on, and ten times faster when the mask changes
-// (bench/pressure_step.cpp).
-inline constexpr int kDirectLimit = 500;
 
 template <int D>
 std::unique_ptr<LinearSolver<D>> make_solver(SolverKind kind);

@@ -6,201 +6,128 @@
 #include <string>
 
 #include "core/error.hpp"
-#include "core/threads.hpp"
 
 namespace polder::fdm {
 namespace {
 
-constexpr int kParallelCells =
-    32768;  // a sweep over fewer cells is over before the other threads have started
-constexpr int kMaxIterations = 200;
-constexpr double kEnough =
-    1.0 / 16;  // squared gain of the first coarse step that makes the second one superfluous
-
-// Rows of a level: on several threads once the level is large.
-template <class F>
-void for_rows(int cells, int rows, const F& f) {
-  if (cells < kParallelCells)
-    for (int r = 0; r < rows; ++r) f(r);
-  else
-    parallel_for(rows, f);
-}
-
-// y += a x
-void add_scaled(Reals& y, double a, const Reals& x) {
-  double* __restrict py = y.data();
-  const double* __restrict px = x.data();
-  const int n = static_cast<int>(y.size());
-  for (int i = 0; i < n; ++i) py[i] += a * px[i];
-}
-
-// y = a x + b z
-void combine(Reals& y, double a, const Reals& x, double b, const Reals& z) {
-  double* __restrict py = y.data();
-  const double* px = x.data();
-  const double* pz = z.data();
-  const int n = static_cast<int>(y.size());
-#pragma GCC ivdep
-  for (int i = 0; i < n; ++i) py[i] = a * px[i] + b * pz[i];
-}
-
-// y = a * x, element by element
-void multiply(const Reals& a, const Reals& x, Reals& y) {
-  const double* __restrict pa = a.data();
-  const double* __restrict px = x.data();
-  double* __restrict py = y.data();
-  const int n = static_cast<int>(y.size());
-  for (int i = 0; i < n; ++i) py[i] = pa[i] * px[i];
-}
-
-// f(c, sum of link * x over the neighbours) for the cells of a row.
-template <int D, class Level, class Row, class F>
-inline void stencil(const Level& a, const Row& row, const double* __restrict x, const F& f) {
-  const double* __restrict t0 = a.link[0].data();
-  const double* __restrict t1 = a.link[1].data();
-  const double* __restrict d1 = a.link_down[1].data();
-  const double* __restrict x1 = x + row.up[1];
-  const double* __restrict y1 = x - row.down[1];
-  const int begin = row.begin, end = row.end;
-  if constexpr (D == 2) {
-#pragma GCC ivdep
-    for (int c = begin; c < end; ++c)
-      f(c, t0[c] * x[c + 1] + t0[c - 1] * x[c - 1] + (t1[c] * x1[c] + d1[c] * y1[c]));
-  } else {
-    const double* __restrict t2 = a.link[2].data();
-    const double* __restrict d2 = a.link_down[2].data();
-    const double* __restrict x2 = x + row.up[2];
-    const double* __restrict y2 = x - row.down[2];
-#pragma GCC ivdep
-    for (int c = begin; c < end; ++c)
-      f(c, t0[c] * x[c + 1] + t0[c - 1] * x[c - 1] + (t1[c] * x1[c] + d1[c] * y1[c]) +
-               (t2[c] * x2[c] + d2[c] * y2[c]));
-  }
-}
+constexpr int kMaxIterations = 500;
+constexpr int kCoarsestCells = 160;  // solved directly from here on
 
 }  // namespace
 
-// ---- kernels
-// --------------------------------------------------------------------------------------------------------
-
 template <int D>
-void Multigrid<D>::apply(const Level& a, const Reals& x, Reals& y) {
-  for_rows(a.cells, static_cast<int>(a.rows.size()), [&](int row) {
-    const double* __restrict px = x.data();
-    const double* __restrict diagonal = a.diagonal.data();
-    double* __restrict py = y.data();
-    stencil<D>(a, a.rows[row], px,
-               [=](int c, double neighbours) { py[c] = diagonal[c] * px[c] - neighbours; });
-  });
-}
-
-template <int D>
-void Multigrid<D>::residual(const Level& a, const Reals& b, const Reals& x, Reals& r) {
-  for_rows(a.cells, static_cast<int>(a.rows.size()), [&](int row) {
-    const double* __restrict px = x.data();
-    const double* __restrict pb = b.data();
-    const double* __restrict diagonal = a.diagonal.data();
-    double* __restrict pr = r.data();
-    stencil<D>(a, a.rows[row], px,
-               [=](int c, double neighbours) { pr[c] = pb[c] - diagonal[c] * px[c] + neighbours; });
-  });
-}
-
-template <int D>
-void Multigrid<D>::smooth(const Level& a, const Reals& b, const Reals& x, Reals& y) {
-  for_rows(a.cells, static_cast<int>(a.rows.size()), [&](int row) {
-    const double* __restrict px = x.data();
-    const double* __restrict pb = b.data();
-    const double* __restrict weight = a.weight.data();
-    double* __restrict py = y.data();
-    // x + weight (b - A x), for weight * diagonal = damping wherever a cell is active
-    stencil<D>(a, a.rows[row], px, [=](int c, double neighbours) {
-      py[c] = (1 - kDamping) * px[c] + weight[c] * (pb[c] + neighbours);
-    });
-  });
-}
-
-template <int D>
-void Multigrid<D>::restrict_to(const Level& fine, const Reals& r, Level& coarse) {
-  for_rows(fine.cells, static_cast<int>(coarse.rows.size()), [&](int row) {
-    const Row& to = coarse.rows[row];
-    double* __restrict sum = coarse.rhs.data() + to.begin - to.x;
-    std::fill(coarse.rhs.begin() + to.begin, coarse.rhs.begin() + to.end, 0.0);
-    for (int k = coarse.first_child[row]; k < coarse.first_child[row + 1]; ++k) {
-      const Row& from = fine.rows[coarse.children[k]];
-      const double* __restrict value = r.data() + from.begin - from.x;
-      const int begin = from.x, end = from.x + from.end - from.begin;
-      if (fine.shift[0] == 1)  // beyond the ends of the row there is one position of padding that holds zero
-        for (int x = begin >> 1; x <= (end - 1) >> 1; ++x) sum[x] += value[2 * x] + value[2 * x + 1];
-      else
-        for (int x = begin; x < end; ++x) sum[x] += value[x];
+void Multigrid<D>::analyse(const Connectivity<D>& connectivity) {
+  connectivity_ = connectivity;
+  levels_.clear();
+  coarsest_stale_ = true;
+  if (connectivity.cells.empty()) return;
+  Index<D> lower = connectivity.cells[0], upper = lower;
+  for (const Index<D>& c : connectivity.cells)
+    for (int d = 0; d < D; ++d) {
+      lower[d] = std::min(lower[d], c[d]);
+      upper[d] = std::max(upper[d], c[d]);
     }
-  });
+  Index<D> size;
+  for (int d = 0; d < D; ++d) size[d] = upper[d] - lower[d] + 1;
+  std::vector<Index<D>> cells = connectivity.cells;
+  for (Index<D>& c : cells)
+    for (int d = 0; d < D; ++d) c[d] -= lower[d];
+  levels_.emplace_back(size, cells);
+  position_.clear();
+  link_position_.clear();
+  for (const Index<D>& c : cells) position_.push_back(levels_[0].position(c));
+  for (const auto& link : connectivity.links) link_position_.push_back(position_[link.low]);
+  for (Reals* a : {&x_, &r_, &z_, &p_, &q_}) a->assign(levels_[0].active.size(), 0);
+}
+
+// Aggregates are squares or cubes; an axis along which most cells are weakly linked is left alone. (Four in a
+// row along a single stiff axis coarsen faster but need up to four times the iterations, more than they
+// save.)
+template <int D>
+std::array<int, D> Multigrid<D>::aggregate_shape(const Level& level) {
+  std::array<int, D> weak{};
+  for (const Row& row : level.rows)
+    for (int c = row.begin; c < row.end; ++c) {
+      double strongest = 0;
+      for (int d = 0; d < D; ++d) strongest = std::max(strongest, level.link[d][c]);
+      for (int d = 0; d < D; ++d) weak[d] += 3 * level.link[d][c] < strongest;
+    }
+  std::array<int, D> shift{};
+  int strong = 0;
+  for (int d = 0; d < D; ++d) {
+    shift[d] = 3 * weak[d] <= 2 * level.cells && level.size[d] > 1;
+    strong += shift[d];
+  }
+  if (strong == 0) shift.fill(1);
+  return shift;
+}
+
+// New values on all levels. The shape of the aggregates follows from the values alone, never from earlier
+// ones.
+template <int D>
+void Multigrid<D>::refresh(const SystemValues& system) {
+  Level& finest = levels_[0];
+  for (std::size_t i = 0; i < position_.size(); ++i) finest.sink[position_[i]] = system.sink[i];
+  for (std::size_t k = 0; k < link_position_.size(); ++k)
+    finest.link[connectivity_.links[k].axis][link_position_[k]] = system.link[k];
+  finest.finish_values();
+  for (std::size_t l = 0; levels_[l].cells > kCoarsestCells; ++l) {
+    const std::array<int, D> shift = aggregate_shape(levels_[l]);
+    if (l + 1 >= levels_.size() || shift != levels_[l].shift) {
+      levels_.erase(levels_.begin() + l + 1, levels_.end());
+      levels_[l].shift = shift;
+      Level coarse = Level::coarser(levels_[l]);
+      levels_.push_back(std::move(coarse));
+      coarsest_stale_ = true;
+    }
+    coarse_values(static_cast<int>(l));
+    levels_[l + 1].finish_values();
+  }
+  if (coarsest_stale_) set_coarsest();
+  const Level& c = levels_.back();
+  for (std::size_t i = 0; i < coarsest_cells_.size(); ++i)
+    coarsest_diagonal_[i] = c.diagonal[coarsest_cells_[i]];
+  for (std::size_t k = 0; k < coarsest_links_.size(); ++k)
+    coarsest_off_diagonal_[k] = -c.link[coarsest_links_[k].first][coarsest_links_[k].second];
+  coarsest_.factorise(coarsest_diagonal_, coarsest_off_diagonal_);
 }
 
 template <int D>
-void Multigrid<D>::prolong_add(const Level& coarse, const Level& fine, Reals& x) {
-  for_rows(fine.cells, static_cast<int>(coarse.rows.size()), [&](int row) {
-    const double* __restrict value = coarse.x.data() + coarse.rows[row].begin - coarse.rows[row].x;
-    for (int k = coarse.first_child[row]; k < coarse.first_child[row + 1]; ++k) {
-      const Row& to = fine.rows[coarse.children[k]];
-      double* __restrict sum = x.data() + to.begin - to.x;
-      const int begin = to.x, end = to.x + to.end - to.begin;
-      if (fine.shift[0] == 1)  // may write to the padding, which never counts
-        for (int i = begin >> 1; i <= (end - 1) >> 1; ++i) {
-          sum[2 * i] += value[i];
-          sum[2 * i + 1] += value[i];
-        }
-      else
-        for (int i = begin; i < end; ++i) sum[i] += value[i];
+void Multigrid<D>::set_coarsest() {
+  const Level& c = levels_.back();
+  std::vector<int> number(c.active.size(), -1);
+  coarsest_cells_.clear();
+  coarsest_links_.clear();
+  for (int p = 0; p < static_cast<int>(c.active.size()); ++p)
+    if (c.active[p]) {
+      number[p] = static_cast<int>(coarsest_cells_.size());
+      coarsest_cells_.push_back(p);
     }
-  });
+  std::vector<Cholesky::Pair> pairs;
+  for (const Row& row : c.rows)
+    for (int p = row.begin; p < row.end; ++p)
+      for (int d = 0; d < D; ++d) {
+        Index<D> above = row.line;
+        above[0] = row.x + p - row.begin;
+        ++above[d];
+        const int other = c.position(above);
+        if (number[p] < 0 || other < 0 || number[other] < 0) continue;
+        coarsest_links_.push_back({d, p});
+        pairs.push_back({number[p], number[other]});
+      }
+  coarsest_.analyse(static_cast<int>(coarsest_cells_.size()), pairs);
+  coarsest_diagonal_.resize(coarsest_cells_.size());
+  coarsest_rhs_.resize(coarsest_cells_.size());
+  coarsest_x_.resize(coarsest_cells_.size());
+  coarsest_off_diagonal_.resize(pairs.size());
+  coarsest_stale_ = false;
 }
-
-// ---- cycle
-// ----------------------------------------------------------------------------------------------------------
 
 template <int D>
 void Multigrid<D>::solve_coarsest(const Reals& b, Reals& x) {
   for (std::size_t i = 0; i < coarsest_cells_.size(); ++i) coarsest_rhs_[i] = b[coarsest_cells_[i]];
   coarsest_.solve(coarsest_rhs_, coarsest_x_);
   for (std::size_t i = 0; i < coarsest_cells_.size(); ++i) x[coarsest_cells_[i]] = coarsest_x_[i];
-}
-
-// x = (approximate inverse) b: smooth, correct on the coarser level, smooth.
-template <int D>
-void Multigrid<D>::cycle(int l, const Reals& b, Reals& x) {
-  if (l + 1 == levels()) return solve_coarsest(b, x);
-  Level& f = levels_[l];
-  multiply(f.weight, b, f.smoothed);
-  residual(f, b, f.smoothed, f.q);
-  restrict_to(f, f.q, levels_[l + 1]);
-  coarse_correction(l + 1);
-  prolong_add(levels_[l + 1], f, f.smoothed);
-  smooth(f, b, f.smoothed, x);
-}
-
-// Two steps of flexible conjugate gradients for the level's system, from `rhs` to `x`.
-template <int D>
-void Multigrid<D>::coarse_correction(int l) {
-  Level& c = levels_[l];
-  if (l + 1 == levels()) return solve_coarsest(c.rhs, c.x);
-  cycle(l, c.rhs, c.p);
-  apply(c, c.p, c.v);
-  const double energy = dot(c.p, c.v);
-  const double step = energy > 0 ? dot(c.p, c.rhs) / energy : 0;
-  const double before = dot(c.rhs, c.rhs);
-  add_scaled(c.rhs, -step, c.v);
-  if (energy <= 0 || dot(c.rhs, c.rhs) <= kEnough * before) {
-    combine(c.x, step, c.p, 0, c.p);
-    return;
-  }
-  cycle(l, c.rhs, c.z);
-  apply(c, c.z, c.q);
-  const double coupling = dot(c.z, c.v);
-  const double second = dot(c.z, c.q) - coupling * coupling / energy;
-  const double step2 = second > 0 ? dot(c.z, c.rhs) / second : 0;
-  combine(c.x, step - coupling * step2 / energy, c.p, step2, c.z);
 }
 
 template <int D>
@@ -214,7 +141,7 @@ SolveReport Multigrid<D>::solve(const SystemValues& system, const Accuracy& accu
   for (std::size_t i = 0; i < position_.size(); ++i) r_[position_[i]] = system.rhs[i];
   const auto scaled_norm = [&] {  // || D^-1/2 r ||
     multiply(a.weight, r_, work);
-    return std::sqrt(dot(r_, work) / kDamping);
+    return std::sqrt(dot(r_, work) / Level::kDamping);
   };
   const auto solution_norm = [&] {  // || D^1/2 x ||
     multiply(a.diagonal, x_, work);
@@ -236,7 +163,7 @@ SolveReport Multigrid<D>::solve(const SystemValues& system, const Accuracy& accu
     const double beta = iteration > 1 ? -step * dot(z_, q_) / rz : 0;
     rz = rz_new;
     combine(p_, 1, z_, beta, p_);
-    apply(a, p_, q_);
+    a.apply(p_, q_);
     const double energy = dot(p_, q_);
     if (!(energy > 0))
       throw NumericalError("pressure equation: conjugate gradients met a direction of energy " +

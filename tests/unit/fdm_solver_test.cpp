@@ -1,8 +1,8 @@
 #include <doctest/doctest.h>
 
 #include "core/error.hpp"
+#include "fdm/aggregation_multigrid.hpp"
 #include "fdm/direct_solver.hpp"
-#include "fdm/multigrid.hpp"
 #include "tests/unit/fdm_scene.hpp"
 
 using namespace polder;
@@ -63,7 +63,7 @@ System<D> irregular(Index<D> size, double contrast, double anisotropy, const Ins
 template <int D>
 void compare(const System<D>& s, int most_iterations) {
   DirectSolver<D> direct;
-  Multigrid<D> multigrid;
+  AggregationMultigrid<D> multigrid;
   direct.analyse(s.connectivity);
   multigrid.analyse(s.connectivity);
   std::vector<double> x(s.sink.size()), y(x);
@@ -146,7 +146,7 @@ TEST_CASE("a solution depends on its system alone, not on the ones before") {
 TEST_CASE("failures are reported, not returned") {
   System<2> s = irregular<2>({90, 40}, 1, 1, [](const auto& c) { return c[1] < 30; });
   std::vector<double> x(s.sink.size());
-  Multigrid<2> multigrid;
+  AggregationMultigrid<2> multigrid;
   multigrid.analyse(s.connectivity);
   s.rhs[7] = std::nan("");
   CHECK_THROWS_AS(multigrid.solve(s.values(), {}, x), NumericalError);
@@ -165,7 +165,7 @@ TEST_CASE("where multigrid does not converge the automatic choice answers with C
   for (double& link : s.link) link *= std::pow(10.0, 14 * random() - 7);
   const Accuracy accuracy{.tolerance = 1e-13};
   std::vector<double> x(s.sink.size()), y(x);
-  Multigrid<2> multigrid;
+  AggregationMultigrid<2> multigrid;
   multigrid.analyse(s.connectivity);
   CHECK_THROWS_AS(multigrid.solve(s.values(), accuracy, x), NumericalError);
   const auto direct = make_solver<2>(SolverKind::direct), automatic = make_solver<2>(SolverKind::automatic);
@@ -173,6 +173,55 @@ TEST_CASE("where multigrid does not converge the automatic choice answers with C
   direct->solve(s.values(), accuracy, x);
   automatic->solve(s.values(), accuracy, y);
   CHECK(x == y);
+}
+
+TEST_CASE("every way to factorise gives the same solution, and keeps its factor while the values stand") {
+  const System<2> s = irregular<2>({60, 40}, 1e3, 1, [](const auto& c) { return c[1] < 30 || c[0] < 20; });
+  std::vector<double> first(s.sink.size()), x(first), y(first), other = s.rhs;
+  for (double& b : other) b = -2 * b;
+  using Ordering = CholeskyMethod::Ordering;
+  for (Ordering ordering : {Ordering::minimum_degree, Ordering::nested_dissection})
+    for (bool supernodal : {false, true}) {
+      CAPTURE(supernodal);
+      DirectSolver<2> fresh(CholeskyMethod{ordering, supernodal}), used(CholeskyMethod{ordering, supernodal});
+      fresh.analyse(s.connectivity);
+      used.analyse(s.connectivity);
+      fresh.solve({s.sink, s.link, other}, {.tolerance = 1e-12}, x);
+      used.solve(s.values(), {.tolerance = 1e-12}, y);
+      double largest = 0, difference = 0;
+      if (ordering == Ordering::minimum_degree && !supernodal) first = y;
+      for (std::size_t i = 0; i < y.size(); ++i) {
+        largest = std::max(largest, std::abs(first[i]));
+        difference = std::max(difference, std::abs(first[i] - y[i]));
+      }
+      CHECK(difference < 1e-9 * largest);
+      used.solve({s.sink, s.link, other}, {.tolerance = 1e-12}, y);  // with the factor it has
+      CHECK(x == y);
+      std::vector<double> sink = s.sink;
+      sink[5] += 1;  // and not with it when one value changed
+      fresh.solve({sink, s.link, s.rhs}, {.tolerance = 1e-12}, x);
+      DirectSolver<2> newest(CholeskyMethod{ordering, supernodal});
+      newest.analyse(s.connectivity);
+      newest.solve({sink, s.link, s.rhs}, {.tolerance = 1e-12}, y);
+      CHECK(x == y);
+    }
+}
+
+TEST_CASE("the choice follows size, mask and contrast") {
+  const auto name = [](const System<2>& s) {
+    const auto solver = make_solver<2>(SolverKind::automatic);
+    solver->analyse(s.connectivity);
+    std::vector<double> x(s.sink.size());
+    solver->solve(s.values(), {}, x);
+    return std::string(solver->name());
+  };
+  const auto levee = [](const auto& c) { return in_levee(c[0] / 90.0, c[1] / 90.0); };
+  CHECK(name(irregular<2>({20, 10}, 1e6, 1, levee)) == "sparse Cholesky");
+  CHECK(name(irregular<2>({90, 40}, 1e3, 1, levee)) == "conjugate gradients with aggregation multigrid");
+  System<2> torn = irregular<2>({90, 40}, 1, 1, levee);
+  verify::Random random(7);
+  for (double& link : torn.link) link *= std::pow(10.0, 6 * random());
+  CHECK(name(torn) == "sparse Cholesky");
 }
 
 TEST_CASE("Cholesky solves a small system to round-off") {
