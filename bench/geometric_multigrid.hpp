@@ -1,6 +1,6 @@
 // Cell-centred geometric multigrid: linear interpolation that follows the conductances, V-cycle. A candidate
 // in the comparison of solvers (bench/solver_table.cpp), not part of the program: the aggregation multigrid
-// of fdm/ was as fast or faster in every row.
+// of fdm/ is as fast or faster in nearly every row and converges where this one does not.
 //
 // A coarse cell is a square or cube of fine cells (2 along each coarsened axis) with its value at the centre.
 // A fine cell takes its value from its own coarse cell and, along each axis, from the one it borders on, in
