@@ -7,6 +7,7 @@
 #include "app/digits.hpp"
 #include "app/geometry.hpp"
 #include "app/size_estimate.hpp"
+#include "mpm/material/material.hpp"
 
 namespace polder::app {
 namespace {
@@ -118,6 +119,41 @@ void check_initial_stress(const Body& body, std::size_t i, Reader& reader) {
     reader.error(key, "k0 needs gravity straight down", "gravity along the last axis; or none, field");
 }
 
+// A property that the body's material has, and each at most once.
+void check_random(const Body& body, std::size_t i, Reader& reader) {
+  using Property = coupling::RandomProperty::Property;
+  using Model = mpm::MaterialModel;
+  const Scene& scene = reader.scene;
+  if (reader.failed(body_key(i) + ".material") || body.material >= static_cast<int>(scene.materials.size()))
+    return;
+  const mpm::MaterialParameters& m = scene.materials[body.material];
+  for (std::size_t r = 0; r < body.random.size(); ++r) {
+    const coupling::RandomProperty& random = body.random[r];
+    const std::string key = body_key(i) + ".random." + std::to_string(r + 1) + ".property";
+    if (reader.failed(key) || !reader.given(key)) continue;
+    for (std::size_t earlier = 0; earlier < r; ++earlier)
+      if (body.random[earlier].property == random.property)
+        reader.error(key, "the body has a field of this property already", "each property once");
+    const bool undrained = m.model == Model::von_mises || m.model == Model::tresca;
+    const bool frictional = random.property == Property::cohesion || random.property == Property::friction;
+    if (frictional && m.model != Model::mohr_coulomb)
+      reader.error(key, "material \"" + m.name + "\" has no such strength", "model = \"mohr-coulomb\"");
+    else if (random.property == Property::cohesion && mpm::range_of(m.cohesion).highest == 0)
+      reader.error(key, "material \"" + m.name + "\" has no cohesion to scatter",
+                   "a cohesion greater than 0");
+    else if (random.property == Property::friction && mpm::range_of(m.friction).highest == 0)
+      reader.error(key, "material \"" + m.name + "\" has no friction to scatter",
+                   "a friction angle greater than 0");
+    else if (random.property == Property::shear_strength && !undrained)
+      reader.error(key, "material \"" + m.name + "\" has no undrained strength",
+                   "model = \"von-mises\" or \"tresca\"");
+    else if (random.property == Property::conductivity &&
+             (m.hydraulic_conductivity == 0 || scene.formulation == "dry"))
+      reader.error(key, "no water flows through material \"" + m.name + "\"",
+                   "a conductivity greater than 0 and a formulation with water");
+  }
+}
+
 }  // namespace
 
 void check_bodies(Reader& reader) {
@@ -138,6 +174,7 @@ void check_bodies(Reader& reader) {
       sound[i] = false;
     }
     if (!reader.failed(body_key(i) + ".initial")) check_initial_stress(body, i, reader);
+    check_random(body, i, reader);
     all_sound = all_sound && sound[i];
   }
   if (reader.failed("grid")) return;

@@ -9,6 +9,7 @@ namespace polder::app {
 using coupling::Body;
 using coupling::Boundary;
 using coupling::InitialStress;
+using coupling::RandomProperty;
 using coupling::Scene;
 using coupling::TimeTable;
 using coupling::Vector3;
@@ -89,6 +90,56 @@ const Table<InitialStress>& initial_keys() {
         if (!(i.layer_depth[n] > i.layer_depth[n - 1])) {
           reader.error(key, "the boundaries of layers do not go down", "rising depths");
           break;
+        }
+    });
+    return t;
+  }();
+  return table;
+}
+
+const Table<RandomProperty>& random_keys() {
+  using R = RandomProperty;
+  static const Table<R> table = [] {
+    Table<R> t;
+    t.add("property",
+          choice<R::Property>({{"cohesion", R::Property::cohesion},
+                               {"friction", R::Property::friction},
+                               {"shear_strength", R::Property::shear_strength},
+                               {"conductivity", R::Property::conductivity}}),
+          &R::property,
+          "What scatters about the material's value: cohesion; friction: the tangent of the friction angle; "
+          "shear_strength: peak undrained strength; conductivity.")
+        .required();
+    t.add("coefficient_of_variation", number(dimension::kNone, kPositive), &R::coefficient_of_variation,
+          "Standard deviation over mean.")
+        .required();
+    t.add(
+         "correlation_length", vector(dimension::kLength), &R::correlation_length,
+         "Along each axis, where the correlation has fallen to 1/e; half of Vanmarcke's scale of fluctuation "
+         "if exponential.")
+        .required();
+    t.add("distribution",
+          choice<R::Distribution>(
+              {{"lognormal", R::Distribution::lognormal}, {"normal", R::Distribution::normal}}),
+          &R::distribution, "Of the property; either is bounded to four standard deviations.");
+    t.add("correlation",
+          choice<R::Correlation>(
+              {{"exponential", R::Correlation::exponential}, {"gaussian", R::Correlation::gaussian}}),
+          &R::correlation, "exp(-r) or exp(-r^2), r the distance in correlation lengths.");
+    t.add("seed", integer(0, 1'000'000'000), &R::seed,
+          "Number of the realisation; properties with equal seeds rise and fall together.");
+    t.check([](R& r, const std::string& path, Reader& reader) {
+      const std::string cov = key_path(path, "coefficient_of_variation");
+      if (r.distribution == R::Distribution::normal && r.coefficient_of_variation > 0.2 &&
+          !reader.failed(cov))
+        reader.error(cov, "four standard deviations below the mean would leave less than a fifth of it",
+                     "at most 0.2 if normal; or distribution = \"lognormal\"");
+      const std::string length = key_path(path, "correlation_length");
+      if (!reader.given(length) || reader.failed(length)) return;
+      for (int d = 0; d < reader.dimension(); ++d)
+        if (!(r.correlation_length[d] > 0)) {
+          reader.error(length, "not a length", "greater than 0 along each axis");
+          return;
         }
     });
     return t;
@@ -240,6 +291,8 @@ const Table<Body>& body_keys() {
     t.add("spin", number(dimension::kAngularVelocity), &Body::spin,
           "Initial angular velocity about the body's centroid, counter-clockwise (2D).");
     t.add("initial", one_table(initial_keys()), &Body::stress, "Initial effective stress.");
+    t.add("random", list_of_tables(random_keys()), &Body::random,
+          "Properties that scatter in space as random fields.");
     t.check(check_shape);
     return t;
   }();

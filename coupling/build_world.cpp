@@ -5,6 +5,7 @@
 #include "core/error.hpp"
 #include "coupling/body_shape.hpp"
 #include "coupling/initial_state.hpp"
+#include "coupling/random_field.hpp"
 #include "coupling/world.hpp"
 #include "mpm/seed_particles.hpp"
 
@@ -122,6 +123,56 @@ void add_loads(const Scene& scene, mpm::Skeleton<D>& skeleton) {
   }
 }
 
+// A lattice with the points' spacing, and one of its points for each of them.
+template <int D>
+Lattice lattice_of(const mpm::SeedRegion<D>& region) {
+  Lattice lattice;
+  for (int d = 0; d < D; ++d) {
+    lattice.lower[d] = region.lower[d] + 0.5 * region.spacing[d];
+    lattice.spacing[d] = region.spacing[d];
+    lattice.count[d] = region.count[d];
+  }
+  return lattice;
+}
+
+// What scatters in a body, at its points.
+template <int D>
+void set_random_state(const Body& body, const mpm::MaterialParameters& material,
+                      const mpm::SeedRegion<D>& region, const mpm::StateLayout& layout, ParticleSet<D>& set) {
+  for (const RandomProperty& random : body.random) {
+    const FactorField field = make_factors(random, lattice_of<D>(region), D);
+    const auto factor = [&](int p) {
+      Vector3 x{};
+      for (int d = 0; d < D; ++d) x[d] = set.position[d][p];
+      return field.at(x);
+    };
+    using Property = RandomProperty::Property;
+    if (random.property == Property::conductivity) {
+      set.conductivity.resize(set.slots());
+      for (int p = 0; p < set.slots(); ++p) set.conductivity[p] = material.hydraulic_conductivity * factor(p);
+      continue;
+    }
+    Reals& state = set.state[random.property == Property::cohesion   ? layout.cohesion_factor
+                             : random.property == Property::friction ? layout.friction_factor
+                                                                     : layout.peak_strength];
+    for (int p = 0; p < set.slots(); ++p) state[p] *= factor(p);
+  }
+}
+
+// Materials learn which of their strengths scatter in one of the bodies, and within which bounds.
+void mark_scatter(Scene& scene) {
+  for (const Body& body : scene.bodies)
+    for (const RandomProperty& random : body.random) {
+      mpm::MaterialParameters::Scatter& s = scene.materials[body.material].scatter;
+      const FactorRange range = factor_range(random);
+      if (random.property == RandomProperty::Property::cohesion) s.cohesion = true;
+      if (random.property != RandomProperty::Property::friction) continue;
+      s.friction = true;
+      s.lowest_friction = std::min(s.lowest_friction, range.lowest);
+      s.highest_friction = std::max(s.highest_friction, range.highest);
+    }
+}
+
 template <int D>
 void add_body(const Scene& scene, const Body& body, World<D>& world) {
   const mpm::MaterialParameters& material = scene.materials[body.material];
@@ -153,6 +204,7 @@ void add_body(const Scene& scene, const Body& body, World<D>& world) {
       set.velocity[1][p] += body.spin * (set.position[0][p] - centre[0]);
     }
   }
+  set_random_state<D>(body, material, region, layout, set);
   if (world.skeleton.options().affine != mpm::AffineKind::none) {
     for (Reals& c : set.affine) c.assign(set.slots(), 0.0);
     if (D == 2 && body.spin != 0) {  // the points' own share of the turning: the gradient of the velocity
@@ -167,6 +219,7 @@ void add_body(const Scene& scene, const Body& body, World<D>& world) {
 template <int D>
 World<D>::World(Scene s, Grid<D> grid, const mpm::SkeletonOptions& options, mpm::BoundarySet<D> boundaries)
     : scene(std::move(s)), skeleton(std::move(grid), options, std::move(boundaries)) {
+  mark_scatter(scene);
   for (const mpm::MaterialParameters& m : scene.materials) layouts.push_back(mpm::state_layout(m, D));
   for (int d = 0; d < D; ++d) gravity[d] = scene.gravity[d];
 }
@@ -182,7 +235,7 @@ template <int D>
 std::unique_ptr<World<D>> build_world(const Scene& scene) {
   auto world = std::make_unique<World<D>>(scene, make_grid<D>(scene.grid), make_options(scene),
                                           make_boundaries<D>(scene));
-  for (const Body& body : scene.bodies) add_body<D>(scene, body, *world);
+  for (const Body& body : scene.bodies) add_body<D>(world->scene, body, *world);
   add_loads<D>(scene, world->skeleton);
   const Formulation* formulation = find_formulation(scene.formulation);
   if (formulation != nullptr && formulation->carrier == WaterCarrier::cells) {
@@ -195,7 +248,7 @@ std::unique_ptr<World<D>> build_world(const Scene& scene) {
     set_saturation(*world);
   }
   set_initial_stress(*world);
-  world->skeleton.set_laws(scene.materials, true);
+  world->skeleton.set_laws(world->scene.materials, true);
   world->skeleton.sort(true);
   return world;
 }

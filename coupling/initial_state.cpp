@@ -84,7 +84,8 @@ void set_saturation(World<D>& world) {
     const int n = set.slots();
     set.pore_water.assign(n, water.density);
     set.wet.assign(n, 1.0);
-    set.conductivity.assign(n, m.hydraulic_conductivity);
+    if (set.conductivity.empty())
+      set.conductivity.assign(n, m.hydraulic_conductivity);  // else a random field
     if (capillary >= 0) std::fill(set.state[capillary].begin(), set.state[capillary].end(), 0.0);
     if (water.phreatic.empty()) continue;
     if (water.suction_above != 0) set.suction_stress.assign(n, 0.0);

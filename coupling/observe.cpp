@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "core/error.hpp"
 #include "coupling/simulation_run.hpp"
@@ -145,6 +146,15 @@ double Simulation::Run<D>::quantity_of(const ParticleSet<D>& set, int p, const s
   }
   if (q == "porosity") return 1 - set.mass[p] / (set.density_solid * set.volume[p]);
   if (q == "saturation") return set.pore_water.empty() ? 0.0 : set.pore_water[p] / scene.water.density;
+  if (q == "cohesion" || q == "friction_angle") {
+    const mpm::StateLayout& layout = world->layouts[set.material];
+    std::vector<double> state(layout.count());
+    for (int k = 0; k < layout.count(); ++k) state[k] = set.state[k][p];
+    const mpm::Strength strength = mpm::strength_of(scene.materials[set.material], layout, state);
+    if (q == "cohesion") return std::isfinite(strength.cohesion) ? strength.cohesion : 0.0;
+    return strength.friction * 180 / std::numbers::pi;
+  }
+  if (q == "conductivity") return set.conductivity.empty() ? 0.0 : set.conductivity[p];
   if (q == "volume") return set.volume[p];
   if (q == "material") return set.material;
   if (q == "id") return set.id[p];

@@ -16,6 +16,8 @@ const std::vector<Quantity>& particle_quantities() {
       {"vertical_stress", "Pa"},   {"mean_effective_stress", "Pa"},
       {"deviatoric_stress", "Pa"}, {"deviatoric_strain", "-"},
       {"porosity", "-"},           {"saturation", "-"},
+      {"cohesion", "Pa"},          {"friction_angle", "deg"},
+      {"conductivity", "m/s"},
   };
   return list;
 }
@@ -37,6 +39,9 @@ const std::vector<Quantity>& frame_quantities() {
       {"deviatoric_stress", "Pa"},
       {"porosity", "-"},
       {"saturation", "-"},
+      {"cohesion", "Pa"},
+      {"friction_angle", "deg"},
+      {"conductivity", "m/s"},
       {"volume", "m3"},
       {"body", "-"},
       {"material", "-"},

@@ -128,6 +128,19 @@ struct InitialStress {
   bool operator==(const InitialStress&) const = default;
 };
 
+// A property of a body that scatters in space (random_field.hpp): the material's value times a random field
+// of mean 1. cohesion: all of the cohesion curve; friction: the tangent of the friction angle;
+// shear_strength: the peak undrained strength; conductivity: the hydraulic conductivity.
+struct RandomProperty {
+  enum class Property { cohesion, friction, shear_strength, conductivity } property = Property::cohesion;
+  enum class Distribution { lognormal, normal } distribution = Distribution::lognormal;
+  enum class Correlation { exponential, gaussian } correlation = Correlation::exponential;
+  double coefficient_of_variation = 0;  // standard deviation over mean [-]
+  Vector3 correlation_length{};         // along each axis [m]
+  int seed = 1;
+  bool operator==(const RandomProperty&) const = default;
+};
+
 struct Body {
   std::string name;
   int material = 0;  // index into Scene::materials
@@ -144,6 +157,7 @@ struct Body {
   Vector3 velocity{};  // [m/s]
   double spin = 0;     // 2D: angular velocity about the body's centroid [rad/s], counter-clockwise
   InitialStress stress;
+  std::vector<RandomProperty> random;
   bool operator==(const Body&) const = default;
 };
 

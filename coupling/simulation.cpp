@@ -28,7 +28,7 @@ constexpr double kSpeedShare = 0.2;  // of a cell that a particle may cross in o
 
 template <int D>
 Simulation::Run<D>::Run(const Scene& s) : world(build_world<D>(s)) {
-  scene = s;
+  scene = world->scene;  // with what the materials were told about the bodies
   if (world->pore_water) {
     PoreWater<D>& water = *world->pore_water;
     update_water_cells(*world, 0.0);

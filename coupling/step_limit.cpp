@@ -40,6 +40,7 @@ Scene patch_of(const Scene& scene, const Body& body, bool wet) {
   b.velocity = {};
   b.spin = 0;
   b.stress = {};
+  b.random.clear();  // mean soil
   b.box = {{Vector3{}, Vector3{}}};
   for (int d = 0; d < D; ++d) {
     s.grid.size[d] = 8 * h;

@@ -17,7 +17,11 @@ void refuse_unsound(const mpm::MaterialParameters& material) {
 }
 
 template <int D>
-std::unique_ptr<Law<D>> make_mohr_coulomb(const mpm::MaterialParameters& m, int capillary_index) {
+std::unique_ptr<Law<D>> make_mohr_coulomb(const mpm::MaterialParameters& m, const mpm::StateLayout& layout) {
+  const int capillary_index = layout.capillary_factor;
+  if (m.scatter.cohesion || m.scatter.friction)
+    return std::make_unique<MohrCoulombLaw<D, ScatteredStrength>>(m, capillary_index, layout.cohesion_factor,
+                                                                  layout.friction_factor);
   const bool angles = mpm::compile_curve(m.friction).varies() || mpm::compile_curve(m.dilation).varies();
   if (angles) return std::make_unique<MohrCoulombLaw<D, MobilisedStrength<Pack>>>(m, capillary_index);
   if (mpm::compile_curve(m.cohesion).varies() || capillary_index >= 0)
@@ -33,8 +37,7 @@ std::unique_ptr<Law<D>> make_law(const mpm::MaterialParameters& material, bool p
   const mpm::StateLayout layout = mpm::state_layout(material, D);
   using Model = mpm::MaterialModel;
   if (material.model == Model::neo_hookean) return std::make_unique<NeoHookean<D>>(material);
-  if (plastic && material.model == Model::mohr_coulomb)
-    return make_mohr_coulomb<D>(material, layout.capillary_factor);
+  if (plastic && material.model == Model::mohr_coulomb) return make_mohr_coulomb<D>(material, layout);
   if (plastic && material.model == Model::von_mises)
     return std::make_unique<VonMisesLaw<D>>(material, layout.peak_strength);
   if (plastic && material.model == Model::tresca)

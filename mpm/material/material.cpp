@@ -36,6 +36,8 @@ StateLayout state_layout(const MaterialParameters& m, int dimension) {
     layout.plastic_strain = add("plastic_deviatoric_strain", "-", 0);
     // soil counts as unsaturated until water is said to be there
     if (range_of(m.capillary_cohesion).highest > 0) layout.capillary_factor = add("capillary_factor", "-", 1);
+    if (m.scatter.cohesion) layout.cohesion_factor = add("cohesion_factor", "-", 1);
+    if (m.scatter.friction) layout.friction_factor = add("friction_factor", "-", 1);
   } else if (is_undrained(m.model)) {
     layout.plastic_strain = add("plastic_deviatoric_strain", "-", 0);
     layout.peak_strength = add("peak_shear_strength", "Pa", m.shear_strength);
@@ -66,10 +68,16 @@ Strength strength_of(const MaterialParameters& m, const StateLayout& layout, std
   if (layout.plastic_strain < 0) return {std::numeric_limits<double>::infinity(), 0, 0};
   const double kappa = state[layout.plastic_strain];
   if (is_undrained(m.model)) return {undrained_strength(m, state[layout.peak_strength], kappa), 0, 0};
-  double cohesion = value_at(m.cohesion, kappa);
+  double cohesion = value_at(m.cohesion, kappa), friction = value_at(m.friction, kappa),
+         dilation = value_at(m.dilation, kappa);
+  if (layout.cohesion_factor >= 0) cohesion *= state[layout.cohesion_factor];
+  if (layout.friction_factor >= 0) {
+    friction = std::atan(std::tan(friction) * state[layout.friction_factor]);
+    dilation = std::min(dilation, friction);
+  }
   if (layout.capillary_factor >= 0)
     cohesion += state[layout.capillary_factor] * value_at(m.capillary_cohesion, kappa);
-  return {cohesion, value_at(m.friction, kappa), value_at(m.dilation, kappa)};
+  return {cohesion, friction, dilation};
 }
 
 // Cyclic Jacobi rotations: keeps small differences of principal values, unlike the trigonometric formula.

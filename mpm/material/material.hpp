@@ -25,6 +25,8 @@ struct StateLayout {
   std::vector<StateVariable> variables;
   int plastic_strain = -1;        // accumulated plastic deviatoric strain kappa = sum sqrt(2/3 de_p : de_p)
   int capillary_factor = -1;      // share of the capillary cohesion that acts: 1 unsaturated, 0 wet
+  int cohesion_factor = -1;       // of this particle, on the cohesion without the capillary one
+  int friction_factor = -1;       // of this particle, on the tangent of the friction angle
   int peak_strength = -1;         // peak undrained shear strength of this particle [Pa]
   int deformation_gradient = -1;  // first component; 2D: xx xy yx yy zz, 3D: row by row
 

@@ -45,6 +45,15 @@ struct MaterialParameters {
   double tension_cutoff =
       std::numeric_limits<double>::infinity();  // largest tensile principal stress [Pa], limited by the apex
 
+  // Whether particles carry factors of their own on the cohesion and on the tangent of the friction angle
+  // (random fields), and between which bounds the latter lie.
+  struct Scatter {
+    bool cohesion = false, friction = false;
+    double lowest_friction = 1, highest_friction = 1;
+    bool operator==(const Scatter&) const = default;
+  };
+  Scatter scatter;
+
   // von Mises and Tresca: peak undrained shear strength at depth z below `strength_datum`, su =
   // shear_strength + strength_gradient z, falling by softening_modulus (<= 0) with plastic deviatoric strain
   // to residual_strength. von Mises: sqrt(J2) = su. Tresca: (sigma_1 - sigma_3)/2 = su.

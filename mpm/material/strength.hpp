@@ -130,6 +130,13 @@ class MobilisedStrength {
     m.cutoff = bounds_.tension;
     return m;
   }
+  // The two parts of the cohesion.
+  POLDER_INLINE Pack cohesion_at(const Particle& p, Pack increment) const {
+    return value_of(cohesion_, p.kappa + increment);
+  }
+  POLDER_INLINE Pack capillary_at(const Particle& p, Pack increment) const {
+    return capillary_index_ < 0 ? Pack{} : p.capillary * value_of(capillary_, p.kappa + increment);
+  }
 
   POLDER_INLINE double lowest_cohesion(const Particle&) const { return cohesion_.lowest; }
   POLDER_INLINE StrengthBounds bounds() const { return bounds_; }
@@ -154,6 +161,64 @@ class MobilisedStrength {
   StrengthBounds bounds_;
   double knots_[4 * mpm::kMaxKnots];
   int n_knots_ = 0;
+};
+
+// Mohr-Coulomb whose particles carry factors of their own on the cohesion and on the tangent of the friction
+// angle: the mobilised strength, scaled. The dilation angle is kept at or below the friction angle.
+class ScatteredStrength {
+ public:
+  using Angle = Pack;
+  using Cohesion = Pack;
+  struct Particle {
+    MobilisedStrength<Pack>::Particle mobilised;
+    Pack cohesion_factor, friction_factor;
+  };
+
+  ScatteredStrength(const mpm::MaterialParameters& m, int capillary_index, int cohesion_index,
+                    int friction_index)
+      : mobilised_(m, capillary_index), cohesion_index_(cohesion_index), friction_index_(friction_index) {
+    bounds_ = mobilised_.bounds();
+    if (friction_index >= 0) {
+      bounds_.sin_lowest = scaled_sine(bounds_.sin_lowest, m.scatter.lowest_friction);
+      bounds_.sin_highest = scaled_sine(bounds_.sin_highest, m.scatter.highest_friction);
+      bounds_.cos_lowest = std::sqrt(1 - bounds_.sin_highest * bounds_.sin_highest);
+    }
+  }
+
+  POLDER_INLINE Particle particle(const Pack* state) const {
+    return {mobilised_.particle(state), cohesion_index_ < 0 ? broadcast(1.0) : state[cohesion_index_],
+            friction_index_ < 0 ? broadcast(1.0) : state[friction_index_]};
+  }
+  POLDER_INLINE StrengthState<Pack, Pack> at(const Particle& p, Pack increment) const {
+    StrengthState<Pack, Pack> m = mobilised_.at(p.mobilised, increment);
+    m.cohesion = mobilised_.cohesion_at(p.mobilised, increment) * p.cohesion_factor +
+                 mobilised_.capillary_at(p.mobilised, increment);
+    if (friction_index_ >= 0) {
+      const Pack tangent = p.friction_factor * m.sin_friction / m.cos_friction;
+      m.cos_friction = 1 / sqrt(1 + tangent * tangent);
+      m.sin_friction = tangent * m.cos_friction;
+      m.sin_dilation = min(m.sin_dilation, m.sin_friction);
+    }
+    return m;
+  }
+  POLDER_INLINE Pack lowest_cohesion(const Particle& p) const {
+    return mobilised_.lowest_cohesion(p.mobilised) * p.cohesion_factor;
+  }
+  POLDER_INLINE StrengthBounds bounds() const { return bounds_; }
+  POLDER_INLINE bool varies() const { return mobilised_.varies(); }
+  POLDER_INLINE int knots() const { return mobilised_.knots(); }
+  POLDER_INLINE Pack knot(int j, const Particle& p) const { return mobilised_.knot(j, p.mobilised); }
+
+ private:
+  // Sine of the angle whose tangent is `factor` times that of the angle of this sine.
+  static double scaled_sine(double sine, double factor) {
+    const double tangent = factor * sine / std::sqrt(1 - sine * sine);
+    return tangent / std::sqrt(1 + tangent * tangent);
+  }
+
+  MobilisedStrength<Pack> mobilised_;
+  int cohesion_index_, friction_index_;
+  StrengthBounds bounds_;
 };
 
 // Tresca: shear strength peak + softening_modulus kappa, not below min(peak, residual); the peak belongs to

@@ -59,6 +59,12 @@ MaterialParameters random_material(Random& r, MaterialModel model) {
     m.dilation = random_curve(r, 0, range_of(m.friction).lowest);
     m.cohesion = r.chance(0.2) ? Mobilised{} : random_curve(r, 0, r.magnitude(10, 1e6));
     if (r.chance(0.3)) m.capillary_cohesion = random_curve(r, 0, 5e3);
+    if (r.chance(0.3)) {
+      m.scatter.cohesion = r.chance(0.5);
+      m.scatter.friction = !m.scatter.cohesion || r.chance(0.5);
+      m.scatter.lowest_friction = r.between(0.3, 1);
+      m.scatter.highest_friction = r.between(1, 3);
+    }
     if (r.chance(0.5)) m.tension_cutoff = r.chance(0.3) ? 0 : r.magnitude(1, 1e5);
   } else {
     m.shear_strength = r.magnitude(1e2, 1e6);
@@ -97,6 +103,10 @@ struct Batch {
       state[i] = r.chance(0.5) ? 0 : r.magnitude(1e-5, 1);
       if (layout.capillary_factor >= 0)
         state[layout.capillary_factor * count + i] = r.chance(0.5) ? 0 : r.between(0, 1);
+      if (layout.cohesion_factor >= 0) state[layout.cohesion_factor * count + i] = r.between(0.1, 5);
+      if (layout.friction_factor >= 0)
+        state[layout.friction_factor * count + i] =
+            r.between(m.scatter.lowest_friction, m.scatter.highest_friction);
       if (layout.peak_strength >= 0)
         state[layout.peak_strength * count + i] = m.shear_strength * r.between(0.5, 2);
     }
