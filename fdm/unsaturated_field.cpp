@@ -53,6 +53,16 @@ void UnsaturatedField<D>::carry() {
   const Grid<D>& grid = cells_.grid();
   grid.carry(p_);
   grid.carry(saturation_, 1, kFromPressure);
+  Reals known;
+  if (!pressure_cells_.empty()) {
+    known.assign(known_slots_, 0);
+    for (int s : pressure_cells_) known[s] = 1;
+    grid.carry(known);
+    pressure_cells_.clear();
+    for (int s = 0; s < grid.slots(); ++s)
+      if (known[s] > 0) pressure_cells_.push_back(s);
+  }
+  known_slots_ = grid.slots();
   positive_.assign(grid.slots(), 0);
   increment_.assign(grid.slots(), 0);
   grid_revision_ = grid.revision();
@@ -63,6 +73,7 @@ void UnsaturatedField<D>::restore(const Reals& pressure, const Reals& saturation
                                   const std::vector<int>& pressure_cells) {
   if (pressure_cells != pressure_cells_) cells_revision_ = 0;
   p_ = pressure, saturation_ = saturation, pressure_cells_ = pressure_cells;
+  known_slots_ = static_cast<int>(pressure.size());
 }
 
 template <int D>

@@ -192,8 +192,9 @@ class UnsaturatedField {
   std::uint64_t grid_revision_ = 0, cells_revision_ = 0;
 
   Reals p_, saturation_, positive_, increment_;  // slots
-  std::vector<int> pressure_cells_;
-  Reals node_grad_;  // slots * kStride
+  std::vector<int> pressure_cells_;              // slots
+  int known_slots_ = 0;                          // of the numbering they belong to
+  Reals node_grad_;                              // slots * kStride
 
   // Active cells.
   std::vector<int> soil_;  // of each cell
