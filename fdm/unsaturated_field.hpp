@@ -23,6 +23,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -124,6 +125,10 @@ class UnsaturatedField {
   const Reals& positive_pressure() const { return positive_; }  // p+ after the last step [Pa], slots
   const Reals& increment() const { return increment_; }  // p+^{n+1} - p+^n of the last step [Pa], slots
   const RetentionCurve& curve(int soil) const { return curves_[soil]; }
+  // Suction up to which a soil pushes [Pa]: p+ = max(p, -full_suction).
+  double full_suction(int soil) const {
+    return curves_[soil].always_saturated() ? std::numeric_limits<double>::infinity() : 0;
+  }
 
   StepReport solve(const UnsaturatedStep& step);
   // Steady flow through a resting skeleton from the present state, by implicit steps of growing length

@@ -36,7 +36,7 @@ class Column {
     double total = 0;  // stress of the mixture at the centre of the cell: its weight above
     for (int j = kCells - 1; j >= 0; --j) {
       total -= 0.5 * kDensity * 9.81 * kCell;
-      stress_[j] = total + suction_part(j) + std::max(pressure(j), 0.0);
+      stress_[j] = total + suction_part(j) + pushing(j);
       total -= 0.5 * kDensity * 9.81 * kCell;
     }
   }
@@ -49,7 +49,7 @@ class Column {
   void run(double duration, double load) {
     const double dt = 0.5 * kCell / std::sqrt(kModulus / kDensity);
     for (const long end = step_ + std::lround(duration / dt); step_ < end; ++step_) {
-      for (int j = 0; j < kCells; ++j) positive_[scene_.grid.slot({0, j})] = std::max(pressure(j), 0.0);
+      for (int j = 0; j < kCells; ++j) positive_[scene_.grid.slot({0, j})] = pushing(j);
       scene_.field.node_gradient(positive_, BoundaryValues::present, WallNormal::none, gradient_);
       predict(dt, load * std::min(1.0, static_cast<double>(step_) * dt / 0.05));
       fdm::UnsaturatedStep step = scene_.unsaturated(dt);
@@ -70,9 +70,11 @@ class Column {
   }
 
  private:
+  double pushing(int cell) const { return std::max(pressure(cell), -scene_.field.full_suction(0)); }
+  // What Bishop's stress S p leaves to the soil besides the part that pushes.
   double suction_part(int cell) const {
     const double p = pressure(cell);
-    return p < 0 ? scene_.field.curve(0).saturation(p) * p : 0;
+    return (p < 0 ? scene_.field.curve(0).saturation(p) * p : p) - pushing(cell);
   }
   double gradient_at(int node) const {
     return gradient_[static_cast<std::size_t>(scene_.grid.slot({0, node})) * 4 + 1];
