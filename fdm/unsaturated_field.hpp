@@ -140,6 +140,9 @@ class UnsaturatedField {
   void node_gradient(std::span<const double> field, BoundaryValues values, WallNormal walls,
                      std::span<double> out);
 
+  // Darcy flow of the last step through the faces: interior ones against the axis (into the low cell), then
+  // boundary faces, into the soil [m3/s].
+  const Reals& face_flow() const { return flow_; }
   // Outflow at the present pressure, as in the balance of the last step.
   const Discharge& discharge() const { return discharge_; }
   const WaterBalance& balance() const { return balance_; }  // of the last step
