@@ -197,14 +197,16 @@ void UnsaturatedField<D>::assemble_lines() {
 }
 
 // Boundary faces as the gradient of p+ sees them: the soil's surface is free of p+ wherever it is not under
-// water, whether water passes or not; on the sides of the grid only where a pressure acts.
+// water, whether water passes or not, and so is a side of the grid that stands for it; elsewhere on the sides
+// only where a pressure acts.
 template <int D>
 void UnsaturatedField<D>::update_gradient_faces() {
   const auto boundary = cells_.boundary_faces();
   gradient_faces_.assign(boundary.begin(), boundary.end());
   for (BoundaryFace<D>& f : gradient_faces_) {
     const BoundaryLaw law = boundary_law(f, cells_.conditions());
-    const bool side = f.boundary >= 0 && !f.free_surface;
+    const bool side = f.boundary >= 0 && !f.free_surface &&
+                      cells_.conditions().boundaries[f.boundary].kind != WaterBoundary<D>::Kind::surface;
     f.open = law.kind == BoundaryLaw::Kind::pressure ||
              (law.kind == BoundaryLaw::Kind::complementary && (!side || p_[cells_.cells()[f.cell].slot] > 0));
     f.pressure = law.kind == BoundaryLaw::Kind::pressure ? std::max(law.upper, 0.0) : 0;

@@ -29,6 +29,8 @@ class Column {
   Column(const fdm::Retention& retention, double conductivity, double table)
       : scene_({0, 0}, {1, kCells}, kCell, {fdm::Soil<2>{.retention = retention}}, 2.2e9) {
     scene_.set_conductivity(conductivity);
+    scene_.conditions.boundaries = {
+        fdm::test::boundary<2>(fdm::WaterBoundary<2>::Kind::surface, 3, 0)};  // free to seep, and free of p+
     scene_.update();
     scene_.set_head([&](const Point<2>& x) { return table - x[1]; });
     gradient_.assign(scene_.velocity.size(), 0);
