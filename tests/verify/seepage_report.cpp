@@ -3,6 +3,8 @@
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 
+#include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -10,6 +12,7 @@
 #include "tests/verify/seepage_columns.hpp"
 #include "tests/verify/seepage_infiltration.hpp"
 #include "tests/verify/seepage_plane.hpp"
+#include "tests/verify/seepage_scene.hpp"
 
 using namespace polder::verify;
 
@@ -188,6 +191,53 @@ void sheet_pile_table() {
     }
 }
 
+// ---- cost
+
+// Best of some steps of half a wave step on a saturated block under water with a moving skeleton.
+void cost_table() {
+  using namespace polder;
+  std::printf(
+      "| cells | saturated equation [ms] | unsaturated one [ms] | retention curve [ns a cell] "
+      "|\n|---|---|---|---|\n");
+  const auto best = [](const auto& f) {
+    double least = 1e9;
+    for (int i = 0; i < 12; ++i) {
+      const auto start = std::chrono::steady_clock::now();
+      f();
+      least =
+          std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    }
+    return least;
+  };
+  for (const int n : {24, 60, 120}) {
+    fdm::Soil<2> soil;
+    soil.retention.model = fdm::Retention::Model::van_genuchten;
+    soil.retention.alpha = 3, soil.retention.n = 2, soil.retention.residual = 0.1;
+    SeepageScene s({0, 0}, {2 * n, n}, 0.1, {soil}, 2.2e9);
+    s.set_conductivity(1e-4);
+    s.conditions.outside_level = 0.1 * n + 1;
+    s.conditions.boundaries = {fdm::test::boundary<2>(fdm::WaterBoundary<2>::Kind::surface, 3, 0)};
+    s.update();
+    s.set_head([&](const auto& x) { return s.conditions.outside_level - x[1]; });
+    s.nodes_to(s.mobility, [](const auto&) { return 3e-7; });
+    s.velocity_to([](const Point<2>& x) { return Point<2>{1e-3 * std::sin(x[1]), -1e-3 * x[1]}; });
+    fdm::PressureField<2> saturated(s.cells, fdm::test::water2(2.2e9));
+    saturated.refresh();
+    saturated.pressure() = s.field.pressure();
+    fdm::UnsaturatedStep step = s.unsaturated(6e-4);
+    step.velocity = s.velocity, step.mobility = s.mobility;
+    const double one = best([&] { saturated.solve(s.Scene<2>::step(6e-4)); });
+    const double other = best([&] { REQUIRE(s.field.solve(step).converged); });
+    std::vector<int> which(100000);
+    std::vector<double> p(which.size()), saturation(p), capacity(p), relative(p);
+    for (std::size_t i = 0; i < p.size(); ++i)
+      which[i] = static_cast<int>(i), p[i] = -1000.0 - static_cast<double>(i);
+    const double curve = best([&] { s.field.curve(0).evaluate(which, p, saturation, capacity, relative); });
+    std::printf("| %d | %.2f | %.2f | %.0f |\n", 2 * n * n, 1e3 * one, 1e3 * other,
+                1e9 * curve / static_cast<double>(p.size()));
+  }
+}
+
 }  // namespace
 
 int main(int count, char** names) {
@@ -204,6 +254,7 @@ int main(int count, char** names) {
                        {"vauclin", vauclin_table},
                        {"block", block_table},
                        {"dam", dam_table},
-                       {"sheet_pile", sheet_pile_table}},
+                       {"sheet_pile", sheet_pile_table},
+                       {"cost", cost_table}},
                       count, names);
 }
