@@ -193,6 +193,16 @@ void check_boundaries(Reader& reader) {
     if (b.kind == Boundary::Kind::free && !b.side && !reader.failed(item_key("boundary", i) + ".kind"))
       reader.error(key, "inside the grid nothing holds the soil that could be set free",
                    "a side; or side, from and to");
+    if (b.kind == Boundary::Kind::tied && !reader.failed(item_key("boundary", i) + ".kind")) {
+      const bool axis = scene.grid.space == Space::axisymmetric;
+      if (!b.side || b.segment || *b.side / 2 == scene.dimension() - 1 || axis)
+        reader.error(key, "only whole sides across from each other can be tied",
+                     axis    ? "plane strain or 3D"
+                     : space ? "\"left\" or \"front\""
+                             : "\"left\"");
+      else
+        whole_side.emplace(*b.side ^ 1, i);
+    }
     if (!b.side || b.segment || is_load(b.kind)) continue;
     const auto [first, is_new] = whole_side.emplace(*b.side, i);
     if (!is_new)

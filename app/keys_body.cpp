@@ -326,12 +326,14 @@ const Table<Boundary>& boundary_keys() {
                         {"friction", Kind::friction},
                         {"velocity", Kind::velocity},
                         {"free", Kind::free},
+                        {"tied", Kind::tied},
                         {"traction", Kind::traction},
                         {"pressure", Kind::pressure}},
                        {"absorbing"}),
           &B::kind,
           "fixed: no motion; roller: none across; friction: Coulomb; velocity: prescribed; free: nothing "
-          "holds; traction, pressure: load on the surface of the soil.")
+          "holds; tied: this side and the one across move alike, as in an endless slope; traction, pressure: "
+          "load on the surface of the soil.")
         .required();
     t.add("coefficient", number(dimension::kNone, kNotNegative), &B::coefficient,
           "Friction coefficient, the tangent of the friction angle.")

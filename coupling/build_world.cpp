@@ -85,6 +85,12 @@ mpm::BoundarySet<D> make_boundaries(const Scene& scene) {
       case Boundary::Kind::velocity:
         s.kind = mpm::BoundaryKind::velocity;
         break;
+      case Boundary::Kind::tied:
+        if (s.side < 0 || s.has_segment || s.side / 2 == D - 1 ||
+            (scene.grid.space == Space::axisymmetric && s.side / 2 == 0))
+          throw InputError("boundary '" + b.name + "': only whole sides across from each other can be tied");
+        s.kind = mpm::BoundaryKind::tied;
+        break;
       default:
         s.kind = mpm::BoundaryKind::free;
         break;

@@ -21,7 +21,13 @@ constexpr double kLargeForce = 0.1;   // out-of-balance force ratio that takes t
 constexpr double kFarthest = 0.05;    // cells that a node may move in one step
 constexpr double kMostDamping = 1.9;  // below 2, where motion would stop at once
 constexpr double kRunawaySteps = 35;  // for each cell of height: five periods of the slowest elastic mode
-constexpr int kFewestSteps = 300;     // before a motion counts as running away
+// A motion that goes on at one speed makes twice the way in twice the steps, one that a constant force drives
+// four times.
+constexpr double kFastGrowth = 2.5;
+constexpr double kStubborn = 0.75;  // share that is left of an out-of-balance force that hardly falls
+constexpr double kCreep = 0.5,
+                 kStuck = 0.9;     // the same for a motion that goes on slowly, after twice the steps
+constexpr int kFewestSteps = 300;  // before a motion counts as running away
 
 }  // namespace
 
@@ -72,6 +78,13 @@ void Relaxation<D>::find_masses() {
       for (int n = 0; n < s.count; ++n) mass_[s.slot[n]] += quarter * set.volume[p] * sum * slope[n];
     }
   }
+  show_masses();
+}
+
+template <int D>
+void Relaxation<D>::show_masses() {
+  sums_.assign(mass_.size() * 8, 0.0);
+  for (std::size_t i = 0; i < mass_.size(); ++i) sums_[i * 8] = mass_[i];
 }
 
 // f(block, slot) for every node that carries soil.
@@ -161,7 +174,7 @@ bool Relaxation<D>::step(double time, double gravity) {
   const bool over = report_.converged || report_.runs_away;
   if (!over) {
     push(damping());
-    skeleton.boundaries().apply(time, 1.0, skeleton.sums(), trial_, true, false);
+    skeleton.boundaries().apply(time, 1.0, sums_, trial_, true, false);
     std::swap(displacement_, trial_);
     double largest = 0;
     for (const double u : displacement_) largest = std::max(largest, std::abs(u));
@@ -179,10 +192,8 @@ bool Relaxation<D>::step(double time, double gravity) {
 template <int D>
 void Relaxation<D>::look(double time, bool may_end) {
   mpm::Skeleton<D>& skeleton = world_.skeleton;
-  sums_.assign(mass_.size() * 8, 0.0);
   trial_.assign(mass_.size() * 4, 0.0);
   each_node([&](int, std::size_t i) {
-    sums_[i * 8] = mass_[i];
     for (int d = 0; d < D; ++d) trial_[i * 4 + d] = force_[i * 4 + d] / mass_[i];
   });
   skeleton.boundaries().apply(time, 1.0, sums_, trial_, true, true);
@@ -197,7 +208,7 @@ void Relaxation<D>::look(double time, bool may_end) {
   const double elastic = audit_.totals(world_).elastic_energy;
   report_.energy_ratio = elastic > 0 ? 0.5 * motion_ / elastic : 0;
   measure_displacement();
-  past_.push_back(report_.displacement);
+  past_.push_back(report_.displacement), past_ratio_.push_back(report_.force_ratio);
   if (report_.steps == 0) ramp_ = options_.ramp * std::min(1.0, report_.force_ratio / kLargeForce);
   report_.converged = may_end && report_.force_ratio < options_.force_tolerance &&
                       report_.energy_ratio < options_.energy_tolerance;
@@ -235,23 +246,31 @@ bool Relaxation<D>::runs_away() const {
     low = std::min(low, grid.block_origin(b)[D - 1]);
     high = std::max(high, grid.block_origin(b)[D - 1] + Grid<D>::kSide);
   }
-  const std::size_t n = past_.size() - 1;
-  if (static_cast<double>(n * kLook) < std::max<double>(kFewestSteps, kRunawaySteps * (high - low)))
-    return false;
-  const double late = past_[n] - past_[n / 2], early = past_[n / 2] - past_[n / 4];
-  return late > 2 * early;  // in twice the steps
+  const std::size_t n = past_.size() - 1, half = n / 2, quarter = n / 4;
+  const double fewest = std::max<double>(kFewestSteps, kRunawaySteps * (high - low));
+  const auto steps = static_cast<double>(n * kLook);
+  if (steps < fewest) return false;
+  const auto least = [&](std::size_t from, std::size_t to) {
+    return *std::min_element(past_ratio_.begin() + static_cast<std::ptrdiff_t>(from),
+                             past_ratio_.begin() + static_cast<std::ptrdiff_t>(to));
+  };
+  const double growth = (past_[n] - past_[half]) / (past_[half] - past_[quarter]);
+  const double left = least(half, n + 1) / least(quarter, half);
+  return (growth > kFastGrowth && left > kStubborn) ||
+         (steps >= 2 * fewest && growth > kCreep && left > kStuck);
 }
 
 template <int D>
 void Relaxation<D>::visit(StateVisitor& v) {
   v.reals("relaxation_displacement", displacement_), v.reals("relaxation_mass", mass_);
   v.reals("relaxation_force", force_), v.reals("relaxation_first_force", first_);
-  v.reals("relaxation_past", past_);
+  v.reals("relaxation_past_displacement", past_), v.reals("relaxation_past_ratio", past_ratio_);
   for (std::size_t b = 0; b < start_.size(); ++b) v.reals("relaxation_start_" + std::to_string(b), start_[b]);
   std::int64_t steps = report_.steps;
   v.count("relaxation_steps", steps), v.number("relaxation_moved", moved_),
       v.number("relaxation_ramp", ramp_);
   report_.steps = steps;
+  if (v.reading()) show_masses();
 }
 
 template <int D>

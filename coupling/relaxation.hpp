@@ -14,10 +14,12 @@
 // The out-of-balance force of the first moment is let loose over some steps, the more the larger it is, which
 // keeps the stress from overshooting into yield.
 //
-// Whether an equilibrium exists shows in the displacement r, the root mean square over the mass: where one
-// exists the steps' growth of r dies out, else it goes on or gets faster. The motion counts as running away
-// when r has grown in the second half of the steps as fast or faster than in the quarter before, after steps
-// enough for the slowest elastic mode.
+// Whether an equilibrium exists shows in the displacement r, the root mean square over the mass, and in the
+// force ratio. Below the limit both die out; beyond it a force is left over that nothing balances, and the
+// soil goes on or gets faster. The motion counts as running away when in the second half of all steps r has
+// grown more than 2.5 times as much as in the quarter before while the least force ratio of that half is
+// above three quarters of the quarter's; or more than half as much while the force ratio has fallen by less
+// than a tenth. Both only after steps enough for the slowest elastic mode, the latter after twice as many.
 #pragma once
 
 #include <vector>
@@ -64,6 +66,7 @@ class Relaxation {
 
  private:
   void find_masses();
+  void show_masses();  // to the boundaries
   void find_forces(double gravity);
   double damping() const;  // c
   void push(double damping);
@@ -83,7 +86,7 @@ class Relaxation {
   Reals trial_;               // work space [slots * 4]
   Reals sums_;                // work space, M as the boundaries expect masses [slots * 8]
   std::vector<Reals> start_;  // of each body, by id: position and plastic strain at the start
-  Reals past_;                // displacement at every look
+  Reals past_, past_ratio_;   // displacement and force ratio at every look
   double moved_ = 0;          // since masses and water cells were last found [cells]
   double ramp_ = 0;           // steps
   double load_ = 0;           // norm of the loads [N]

@@ -166,7 +166,9 @@ struct Body {
 
 struct Boundary {
   std::string name;
-  enum class Kind { fixed, roller, friction, velocity, free, traction, pressure } kind = Kind::roller;
+  // tied: this side and the one across move alike, an endless row of equal columns; for motion small against
+  // a cell
+  enum class Kind { fixed, roller, friction, velocity, free, tied, traction, pressure } kind = Kind::roller;
   // A side of the grid (2 * axis + (0 lower, 1 upper)), a segment from -> to (2D) or a plane polygon (3D).
   // The soil lies to the left of the segment, seen from `from` to `to`, and on the side of the polygon from
   // which its corners run counter-clockwise; loads act on the material surface that lies there.

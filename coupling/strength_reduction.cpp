@@ -11,8 +11,9 @@ namespace {
 
 // Steps allowed for a trial: for each cell of height, several times what a motion gets before it may count as
 // running away.
-constexpr long kStepsForEachCell = 140;
-constexpr double kGrowth = 1.3;  // of the factor while no bracket is known
+constexpr long kStepsForEachCell = 400;
+constexpr double kMostFriction = 1.39;  // [rad], of strength that is multiplied: just below what a law takes
+constexpr double kGrowth = 1.3;         // of the factor while no bracket is known
 
 template <class F>
 mpm::Mobilised mapped(mpm::Mobilised m, const F& f) {
@@ -48,7 +49,9 @@ mpm::MaterialParameters with_reduced_strength(const mpm::MaterialParameters& mat
   const auto divided = [&](double v) { return v / factor; };
   m.cohesion = mapped(m.cohesion, divided);
   m.capillary_cohesion = mapped(m.capillary_cohesion, divided);
-  m.friction = mapped(m.friction, [&](double v) { return std::atan(std::tan(v) / factor); });
+  m.friction = mapped(m.friction, [&](double v) {
+    return std::min(std::atan(std::tan(v) / factor), std::max(v, kMostFriction));
+  });
   m.dilation = limited_to(m.dilation, m.friction);
   m.tension_cutoff /= factor;
   m.shear_strength /= factor, m.strength_gradient /= factor;

@@ -50,13 +50,32 @@ bool constrained(const Grid<D>& grid, const BoundarySpec<D>& spec, const std::op
 }  // namespace
 
 template <int D>
+void BoundarySet<D>::tie(const Grid<D>& grid, int side) {
+  const int axis = side / 2;
+  std::erase_if(nodes_,
+                [&](const Node& n) { return specs_[n.spec].side >= 0 && specs_[n.spec].side / 2 == axis; });
+  for (int slot = 0; slot < grid.slots(); ++slot) {
+    Index<D> node = grid.index(slot);
+    if (node[axis] != 0) continue;
+    node[axis] = grid.cells()[axis];
+    const int across = grid.slot(node);
+    if (across >= 0) ties_.push_back({slot, across});
+  }
+}
+
+template <int D>
 void BoundarySet<D>::update(const Grid<D>& grid) {
   if (revision_ == grid.revision()) return;
   revision_ = grid.revision();
   nodes_.clear();
+  ties_.clear();
   held_.assign(grid.slots(), 0);
   for (std::size_t s = 0; s < specs_.size(); ++s) {
     const BoundarySpec<D>& spec = specs_[s];
+    if (spec.kind == BoundaryKind::tied) {
+      tie(grid, spec.side);
+      continue;
+    }
     std::optional<PlanePatch> patch;
     if (spec.side < 0 && !spec.patch.empty()) patch.emplace(spec.patch);
     // One rule for a node of one side: the later one.
@@ -95,6 +114,14 @@ void BoundarySet<D>::update(const Grid<D>& grid) {
 template <int D>
 void BoundarySet<D>::apply(double time, double dt, const Reals& sums, Reals& v, bool friction, bool record) {
   if (record) reaction_.assign(specs_.size(), Point<D>{});
+  for (const auto& [a, b] : ties_) {
+    const double m = sums[static_cast<std::size_t>(a) * 8], n = sums[static_cast<std::size_t>(b) * 8];
+    if (!(m + n > 0)) continue;
+    for (int d = 0; d < D; ++d) {
+      double &u = v[static_cast<std::size_t>(a) * 4 + d], &w = v[static_cast<std::size_t>(b) * 4 + d];
+      u = w = (m * u + n * w) / (m + n);
+    }
+  }
   std::vector<std::array<double, D>> prescribed(specs_.size());
   for (std::size_t s = 0; s < specs_.size(); ++s)
     for (int d = 0; d < D; ++d)
@@ -121,6 +148,7 @@ void BoundarySet<D>::apply(double time, double dt, const Reals& sums, Reals& v, 
       for (int d = 0; d < D; ++d) normal += u[d] * n.normal[d];
       switch (spec.kind) {
         case BoundaryKind::free:
+        case BoundaryKind::tied:
           break;
         case BoundaryKind::fixed:
           for (int d = 0; d < D; ++d) u[d] = 0;

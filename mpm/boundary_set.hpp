@@ -21,7 +21,9 @@
 
 namespace polder::mpm {
 
-enum class BoundaryKind { free, fixed, roller, friction, velocity };
+// tied: the nodes of the side and those across the grid move alike, as in one of endless equal columns side
+// by side; points must not leave through it.
+enum class BoundaryKind { free, fixed, roller, friction, velocity, tied };
 
 template <int D>
 struct BoundarySpec {
@@ -82,8 +84,11 @@ class BoundarySet {
     Point<D> normal;  // into the material
     double pressed;   // friction: velocity into the boundary that it has taken away
   };
+  void tie(const Grid<D>& grid, int side);
+
   std::vector<BoundarySpec<D>> specs_;
   std::vector<Node> nodes_;
+  std::vector<std::array<int, 2>> ties_;  // slots
   std::vector<std::uint8_t> held_;
   std::vector<Point<D>> reaction_;
   std::uint64_t revision_ = 0;

@@ -30,6 +30,7 @@ import expectation_figures
 import field_figures
 import history_figures
 import probe_figures
+import stability_figures
 from results import PlotError, Results
 
 
@@ -65,6 +66,7 @@ def draw(options):
         written += history_figures.draw(results, output)
         written += probe_figures.draw(results, output)
         written += expectation_figures.draw(results, output)
+        written += stability_figures.draw(results, output)
     return written
 
 

@@ -204,6 +204,27 @@ from_stage = "second"
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertTrue(os.path.exists(os.path.join(run, "plots", "soil_velocity_000002.csv")))
 
+    def test_stability(self):
+        folder = os.path.join(self.root, "stability")
+        shutil.copytree(self.folder, folder, ignore=shutil.ignore_patterns("plots", "*.csv"))
+        result = {"factor_of_safety": 1.25, "mechanism": {"factor": 1.35}}
+        with open(os.path.join(folder, "stability.json"), "w", encoding="utf-8") as file:
+            json.dump(result, file)
+        with open(os.path.join(folder, "trials.csv"), "w", encoding="utf-8") as file:
+            file.write("factor[-],stands,steps,force_ratio[-],displacement[m],largest_displacement[m]\n"
+                       "1,1,300,4e-4,0.01,0.02\n1.3,0,900,2e-2,0.5,0.9\n1.2,1,800,5e-4,0.03,0.05\n")
+        with open(os.path.join(folder, "slip_surface.csv"), "w", encoding="utf-8") as file:
+            file.write("x[m],y[m]\n1,2\n2,1\n4,0.5\n")
+        drawn = plot(folder)
+        self.assertEqual(drawn.returncode, 0, drawn.stderr)
+        self.check_picture(os.path.join(folder, "plots", "stability.png"))
+        trials = columns(os.path.join(folder, "plots", "stability_trials.csv"))
+        self.assertEqual([float(f) for f in trials["factor[-]"]], [1, 1.2, 1.3])
+        mechanism = columns(os.path.join(folder, "plots", "stability_mechanism.csv"))
+        self.assertGreater(max(float(d) for d in mechanism["displacement[m]"]), 0)
+        os.remove(os.path.join(folder, "trials.csv"))
+        self.check_error(plot(folder), 4, "stability.json lies there without trials.csv")
+
     def test_errors_are_one_line_with_their_exit_code(self):
         self.check_error(plot(os.path.join(self.root, "nowhere")), 2, "nowhere: there is no such folder")
         empty = os.path.join(self.root, "empty")

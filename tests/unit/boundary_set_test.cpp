@@ -368,3 +368,26 @@ TEST_CASE("the held nodes follow the blocks of the grid") {
     });
   }
 }
+
+TEST_CASE("tied sides move with their common momentum, and nothing else holds them") {
+  Nodes<2> nodes;
+  std::vector<BoundarySpec<2>> specs;
+  for (int side = 0; side < 4; ++side) specs.push_back(on_side<2>(BoundaryKind::roller, side));
+  specs.push_back(on_side<2>(BoundaryKind::tied, 0));
+  specs.push_back(on_side<2>(BoundaryKind::fixed, 2));
+  BoundarySet<2> boundaries(specs);
+  boundaries.update(nodes.grid);
+  nodes.each([&](int slot, const Index<2>& node) { nodes.set(slot, {0.1 * node[0] + 0.2, -0.3 * node[0]}); });
+  const int n = nodes.grid.cells()[0];
+  boundaries.apply(0, kStep, nodes.sums, nodes.v, true, false);
+  for (int j = 0; j <= n; ++j) {
+    CAPTURE(j);
+    const int a = nodes.grid.slot({0, j}), b = nodes.grid.slot({n, j});
+    const double share = nodes.mass(b) / (nodes.mass(a) + nodes.mass(b));
+    const Point<2> common{0.2 + share * 0.1 * n, j == n ? 0.0 : -share * 0.3 * n};  // the top is a roller
+    const Point<2> due = j == 0 ? Point<2>{} : common;
+    check_close<2>(nodes.at(a), due);
+    check_close<2>(nodes.at(b), due);
+  }
+  check_close<2>(nodes.at(Index<2>{3, 4}), {0.5, -0.9});
+}

@@ -82,26 +82,26 @@ Scene scene_of(const PublishedSlope& slope, double cell) {
 
 Scene scene_of(const InfiniteSlope& slope, int cells) {
   constexpr double kPorosity = 0.4;
-  const double thickness = slope.depth * std::cos(slope.angle), h = thickness / cells,
-               length = 10 * cells * h;
+  const double thickness = slope.depth * std::cos(slope.angle), h = thickness / cells;
   const bool wet = slope.water > 0;
   Scene s;
   s.formulation = wet ? "one-layer" : "dry";
   s.gravity = {kGravity * std::sin(slope.angle), -kGravity * std::cos(slope.angle), 0};
-  s.grid.size = {length + 4 * h, thickness + 2 * h, 0};
+  s.numerics.locking = coupling::LockingCure::none;
+  s.grid.size = {2 * h, thickness + 2 * h, 0};
   s.grid.cell = h;
-  mpm::MaterialParameters weak;
-  weak.name = "weak";
-  weak.model = mpm::MaterialModel::mohr_coulomb;
-  weak.young = 50e6;
-  weak.poisson = 0.3;
-  weak.cohesion.value = {slope.cohesion};
-  weak.friction.value = {slope.friction};
-  weak.dilation.value = {slope.associated ? slope.friction : 0.0};
+  mpm::MaterialParameters soil;
+  soil.name = "soil";
+  soil.model = mpm::MaterialModel::mohr_coulomb;
+  soil.young = 50e6;
+  soil.poisson = 0.3;
+  soil.cohesion.value = {slope.cohesion};
+  soil.friction.value = {slope.friction};
+  soil.dilation.value = {slope.friction};
   if (wet) {
-    weak.porosity = kPorosity;
-    weak.density_solid = (slope.saturated_weight / kGravity - kPorosity * s.water.density) / (1 - kPorosity);
-    weak.hydraulic_conductivity = 1e-4;
+    soil.porosity = kPorosity;
+    soil.density_solid = (slope.saturated_weight / kGravity - kPorosity * s.water.density) / (1 - kPorosity);
+    soil.hydraulic_conductivity = 1e-4;
     const double level = slope.water * thickness;
     s.water.initial = coupling::WaterSpec::Initial::field;
     s.water.initial_gradient = s.water.density * s.gravity[1];
@@ -110,21 +110,14 @@ Scene scene_of(const InfiniteSlope& slope, int cells) {
         1 - (slope.saturated_weight - slope.weight) / (kPorosity * s.water.density * kGravity);
     if (slope.water < 1) s.water.phreatic = {{0, level, 0}, {s.grid.size[0], level, 0}};
   } else {
-    weak.density_solid = slope.weight / kGravity;
+    soil.density_solid = slope.weight / kGravity;
   }
-  mpm::MaterialParameters strong = weak;
-  strong.name = "strong";
-  strong.cohesion.value = {1e7};
-  s.materials = {weak, strong};
-  const auto box = [&](const char* name, int material, double y0, double y1) {
-    coupling::Body b;
-    b.name = name;
-    b.material = material;
-    b.box = {{{2 * h, y0, 0}, {2 * h + length, y1, 0}}};
-    return b;
-  };
-  s.bodies = {box("weak", 0, 0, 2 * h), box("slab", 1, 2 * h, thickness)};
-  s.boundaries = {on_side(2, Boundary::Kind::fixed)};
+  s.materials = {soil};
+  coupling::Body column;
+  column.name = "column";
+  column.box = {{{0, 0, 0}, {2 * h, thickness, 0}}};
+  s.bodies = {column};
+  s.boundaries = {on_side(2, Boundary::Kind::fixed), on_side(0, Boundary::Kind::tied)};
   s.stages = {elastic_equilibrium()};
   return s;
 }

@@ -20,14 +20,14 @@ struct PublishedSlope {
 std::vector<PublishedSlope> published_slopes();
 coupling::Scene scene_of(const PublishedSlope& slope, double cell);
 
-// An infinite slope: a slab of strong soil, `cells` high and ten times as long, on a layer of the soil in
-// question two cells thick, in a frame that is tilted by the slope's angle; the ends of the slab are free.
+// An infinite slope: a column `cells` high with tied sides, in a frame that is tilted by the slope's angle;
+// psi = phi. Without the cure of volumetric locking: a column in simple shear does not lock, and where points
+// of one cell dilate differently the cure is not symmetric and can feed on itself.
 struct InfiniteSlope {
   double angle, friction, cohesion;  // [rad], [rad], [Pa]
   double weight, saturated_weight;   // [N/m3]
   double depth;                      // vertical [m]
   double water;                      // its share of the depth, flowing parallel to the slope
-  bool associated;                   // psi = phi, else 0
 };
 coupling::Scene scene_of(const InfiniteSlope& slope, int cells);
 
