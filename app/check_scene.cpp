@@ -173,6 +173,7 @@ void check_names(Reader& reader) {
   check_names_of(s.bodies, "body", reader);
   check_names_of(s.boundaries, "boundary", reader);
   check_names_of(s.water_boundaries, "water", reader);
+  check_names_of(s.water_lines, "water_line", reader);
   check_names_of(s.stages, "stage", reader);
   check_names_of(s.measures, "measure", reader);
 }

@@ -142,6 +142,12 @@ void check_water_boundaries(Reader& reader) {
     const WaterBoundary& w = scene.water_boundaries[i];
     const std::string key = "water." + std::to_string(i + 1) + ".where";
     if (reader.failed(key) || !reader.given(key)) continue;
+    if (w.side == WaterBoundary::kOnSurface) {
+      if (w.kind == WaterBoundary::Kind::surface)
+        reader.error("water." + std::to_string(i + 1) + ".kind", "the soil's surface is a surface already",
+                     "another kind; or a side of the grid");
+      continue;
+    }
     const auto axis = static_cast<std::size_t>(w.side / 2);
     const double at = scene.grid.origin[axis] + (w.side % 2 ? scene.grid.size[axis] : 0);
     if (w.from && w.to &&
@@ -173,12 +179,79 @@ void check_relaxations(Reader& reader) {
   }
 }
 
+// What needs retention curves, and what contradicts them.
+void check_unsaturated(Reader& reader) {
+  const Scene& scene = reader.scene;
+  if (reader.failed("material") || reader.failed("formulation")) return;
+  const bool unsaturated = scene.unsaturated();
+  const std::string needed = "a material with a retention curve";
+  for (std::size_t i = 0; i < scene.water_boundaries.size(); ++i) {
+    using Kind = WaterBoundary::Kind;
+    const WaterBoundary& w = scene.water_boundaries[i];
+    const std::string key = "water." + std::to_string(i + 1);
+    if (unsaturated || reader.failed(key)) continue;
+    if (w.kind == Kind::flux || w.kind == Kind::rain || w.kind == Kind::evaporation ||
+        w.kind == Kind::seepage_face)
+      reader.error(key + ".kind", "needs unsaturated flow, and no material has a retention curve", needed);
+    else if (w.side == WaterBoundary::kOnSurface)
+      reader.error(key + ".where",
+                   "a part of the soil's surface needs unsaturated flow, and no material has a "
+                   "retention curve",
+                   needed + "; or a side of the grid");
+  }
+  for (std::size_t i = 0; i < scene.water_lines.size(); ++i) {
+    const std::string key = "water_line." + std::to_string(i + 1);
+    if (reader.failed(key)) continue;
+    if (!unsaturated)
+      reader.error(key, "needs unsaturated flow, and no material has a retention curve", needed);
+    else if (scene.dimension() == 3)
+      reader.error(key, "lines in the soil are for grids in the plane", "space = \"plane-strain\"");
+  }
+  if (!unsaturated && scene.water.initial_saturation && !reader.failed("pore_water"))
+    reader.error("pore_water.initial_saturation", "needs a retention curve, and no material has one",
+                 needed + "; or saturation_above");
+  if (unsaturated)
+    for (const char* name : {"saturation_above", "suction_above"})
+      if (const std::string key = std::string("pore_water.") + name; reader.given(key) && !reader.failed(key))
+        reader.error(key, "contradicts the retention curves, which give saturation and suction",
+                     "initial_saturation; or no retention");
+  bool all = true, any = false;
+  for (const auto& m : scene.materials)
+    if (m.porosity > 0) all = all && m.kozeny_carman, any = any || m.kozeny_carman;
+  for (const auto& m : scene.materials) {
+    const std::string key = "material." + m.name;
+    if (any && !all && m.kozeny_carman)
+      reader.error(key + ".kozeny_carman", "other porous materials do not have it",
+                   "the same for all porous materials");
+    if (!m.anisotropy.empty() && static_cast<int>(m.anisotropy.size()) != scene.dimension() &&
+        !reader.failed(key + ".anisotropy") && !reader.failed("grid"))
+      reader.error(key + ".anisotropy", std::to_string(m.anisotropy.size()) + " factors",
+                   std::to_string(scene.dimension()) + ", one for each axis");
+    if (!m.anisotropy.empty() && !unsaturated && !reader.failed(key + ".anisotropy"))
+      reader.error(key + ".anisotropy", "needs unsaturated flow, and no material has a retention curve",
+                   needed);
+  }
+}
+
+void check_stages(Reader& reader) {
+  const Scene& scene = reader.scene;
+  const coupling::Formulation* f = coupling::find_formulation(scene.formulation);
+  if (!f || reader.failed("formulation") || f->carrier != coupling::WaterCarrier::none) return;
+  for (std::size_t i = 0; i < scene.stages.size(); ++i)
+    if (!scene.stages[i].moves() && !reader.failed("stage." + std::to_string(i + 1)))
+      reader.error("stage." + std::to_string(i + 1) + ".mode",
+                   "formulation \"" + scene.formulation + "\" has no water to flow",
+                   "equilibrium, dynamic; or another formulation");
+}
+
 }  // namespace
 
 void check_water(Reader& reader) {
   const coupling::Formulation* f = coupling::find_formulation(reader.scene.formulation);
   check_phreatic_line(reader);
   check_water_boundaries(reader);
+  check_unsaturated(reader);
+  check_stages(reader);
   if (!f || reader.failed("formulation") || f->carrier == coupling::WaterCarrier::none) return;
   check_materials(reader);
   check_relaxations(reader);

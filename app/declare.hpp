@@ -3,6 +3,7 @@
 // Schema. The default is the value the member has in a freshly made object, so it too is written down once.
 #pragma once
 
+#include <concepts>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -88,8 +89,9 @@ class Table {
     std::function<std::optional<Node>(const T&, const coupling::Scene&)> write;
   };
 
-  template <class V>
-  Entry& add(std::string name, const Codec<V>& codec, V T::*member, std::string sentence) {
+  template <class V, class Base>
+  requires std::derived_from<T, Base> Entry& add(std::string name, const Codec<V>& codec, V Base::*member,
+                                                 std::string sentence) {
     Entry& e = declare(std::move(name), codec, std::move(sentence));
     // In place: while a table is read, what it already holds decides how the rest is read (the space of the
     // grid).
@@ -108,8 +110,9 @@ class Table {
   }
 
   // A member that may be absent has no default.
-  template <class V>
-  Entry& add(std::string name, const Codec<V>& codec, std::optional<V> T::*member, std::string sentence) {
+  template <class V, class Base>
+  requires std::derived_from<T, Base> Entry& add(std::string name, const Codec<V>& codec,
+                                                 std::optional<V> Base::*member, std::string sentence) {
     Entry& e = declare(std::move(name), codec, std::move(sentence));
     e.read = [codec, member](const Node& n, const std::string& key, T& t, Reader& reader) {
       V v{};
@@ -239,7 +242,7 @@ class Table {
 
   template <class V>
   static bool is_unset(const Codec<V>& codec, const V& value) {
-    return codec.nest != Nest::one && is_empty(codec.write(value, default_scene()));
+    return is_empty(codec.write(value, default_scene()));
   }
 
   template <class V>

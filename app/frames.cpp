@@ -29,6 +29,12 @@ std::vector<FrameArray> arrays(const std::vector<FieldView>& fields,
   return list;
 }
 
+double frame_interval(const Simulation& s) {
+  const coupling::Scene& scene = s.scene();
+  const double own = s.finished() ? 0 : scene.stages[static_cast<std::size_t>(s.stage())].output_every;
+  return own > 0 ? own : scene.output.every;
+}
+
 FrameSeries series(const RunFolder& folder, const char* name, std::optional<double> keep_until) {
   return keep_until ? FrameSeries(folder.path(), name, *keep_until) : FrameSeries(folder.path(), name);
 }
@@ -36,7 +42,7 @@ FrameSeries series(const RunFolder& folder, const char* name, std::optional<doub
 }  // namespace
 
 Frames::Frames(const Simulation& s, const RunFolder& folder, std::optional<double> keep_until)
-    : tick_(s.scene().output.every) {
+    : tick_(frame_interval(s)), stage_(s.stage()) {
   const coupling::Scene& scene = s.scene();
   const bool wet = coupling::find_formulation(scene.formulation)->carrier != coupling::WaterCarrier::none;
   for (const std::string& f : scene.output.fields)
@@ -46,8 +52,12 @@ Frames::Frames(const Simulation& s, const RunFolder& folder, std::optional<doubl
 }
 
 void Frames::see(const Simulation& s) {
-  const bool due = tick_.due(s.time());
-  if (due || last_ < 0) write(s);
+  const bool due = tick_.due(s.time()), new_stage = s.stage() != stage_;
+  // The state at the end of a stage is what the next one starts from: never left out where frames are asked
+  // for.
+  if (due || last_ < 0 || (new_stage && last_ < s.time() && s.scene().output.every > 0)) write(s);
+  if (new_stage) tick_.set_interval(frame_interval(s), s.time());
+  stage_ = s.stage();
 }
 
 void Frames::finish(const Simulation& s) {

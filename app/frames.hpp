@@ -27,6 +27,7 @@ class Frames {
   void write(const coupling::Simulation& simulation);
 
   Ticker tick_;
+  int stage_;  // when last seen
   double last_ = -1;
   std::vector<std::string> fields_;
   std::optional<FrameSeries> soil_, fluid_;

@@ -13,7 +13,6 @@ using coupling::RandomProperty;
 using coupling::Scene;
 using coupling::TimeTable;
 using coupling::Vector3;
-using coupling::WaterBoundary;
 
 namespace {
 
@@ -365,59 +364,6 @@ const Table<Boundary>& boundary_keys() {
           "Compression normal to the soil's surface.")
         .required()
         .only_with("kind", "kind = \"pressure\"", is(Kind::pressure));
-    return t;
-  }();
-  return table;
-}
-
-const Table<WaterBoundary>& water_keys() {
-  using Kind = WaterBoundary::Kind;
-  static const Table<WaterBoundary> table = [] {
-    using W = WaterBoundary;
-    Table<W> t;
-    t.add("name", identifier(), &W::name, "Name in messages and results; default: water-1, water-2, ...");
-    t.add<Place>(
-         "where", place(false),
-         [](const W& w) {
-           Place p{w.side, std::nullopt, {}};
-           if (w.from && w.to) p.segment = {*w.from, *w.to};
-           return p;
-         },
-         [](W& w, Place p) {
-           w.side = p.side.value_or(0);
-           w.from.reset();
-           w.to.reset();
-           if (p.segment) {
-             w.from = (*p.segment)[0];
-             w.to = (*p.segment)[1];
-           }
-         },
-         "A side of the grid, or a part of it.")
-        .required();
-    t.add("kind",
-          choice<Kind>({{"head", Kind::head},
-                        {"pressure", Kind::pressure},
-                        {"impermeable", Kind::impermeable},
-                        {"surface", Kind::surface}},
-                       {"flux", "rain", "seepage-face"}),
-          &W::kind,
-          "head: hydrostatic below a water level; pressure: one pore pressure; impermeable: no flow; "
-          "surface: as on the "
-          "soil's free surface, the pressure of open water or none.")
-        .required();
-    t.add("head", time_table(dimension::kLength), &W::value,
-          "Water level, a height in the grid's coordinates.")
-        .required()
-        .only_with("kind", "kind = \"head\"", [](const W& w) { return w.kind == Kind::head; });
-    t.add("pressure", time_table(dimension::kPressure), &W::value, "Pore pressure.")
-        .required()
-        .only_with("kind", "kind = \"pressure\"", [](const W& w) { return w.kind == Kind::pressure; });
-    t.check([](W&, const std::string& path, Reader& reader) {
-      // A place without a side is a segment inside the grid, which water boundaries do not have.
-      const std::string key = key_path(path, "where");
-      if (reader.given(key + ".from") && !reader.given(key + ".side") && !reader.failed(key))
-        reader.error(key, "water enters through the sides of the grid", "a side; or side, from and to");
-    });
     return t;
   }();
   return table;

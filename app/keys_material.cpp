@@ -9,10 +9,11 @@
 
 namespace polder::app {
 
+using coupling::BishopFactor;
+using coupling::Material;
 using coupling::Scene;
 using coupling::WaterSpec;
 using mpm::MaterialModel;
-using mpm::MaterialParameters;
 using mpm::Mobilised;
 
 namespace {
@@ -65,7 +66,7 @@ double value_at(const Mobilised& m, double strain) {
 }
 
 // More dilation than friction would let plastic flow create energy.
-void check_dilation(const MaterialParameters& m, const std::string& path, Reader& reader) {
+void check_dilation(const Material& m, const std::string& path, Reader& reader) {
   const std::string key = key_path(path, "dilation");
   if (m.model != MaterialModel::mohr_coulomb || reader.failed(key_path(path, "friction")) ||
       reader.failed(key))
@@ -90,7 +91,7 @@ void check_dilation(const MaterialParameters& m, const std::string& path, Reader
   }
 }
 
-void check_density(MaterialParameters&, const std::string& path, Reader& reader) {
+void check_density(Material&, const std::string& path, Reader& reader) {
   const std::string density = key_path(path, "density_solid"), weight = key_path(path, "unit_weight");
   if (reader.given(density) && reader.given(weight))
     reader.error(weight, "density_solid and unit_weight contradict each other", "one of them");
@@ -100,9 +101,9 @@ void check_density(MaterialParameters&, const std::string& path, Reader& reader)
 
 }  // namespace
 
-const Table<MaterialParameters>& material_keys() {
-  static const Table<MaterialParameters> table = [] {
-    using M = MaterialParameters;
+const Table<Material>& material_keys() {
+  static const Table<Material> table = [] {
+    using M = Material;
     const auto mohr_coulomb = [](const M& m) { return m.model == MaterialModel::mohr_coulomb; };
     const auto undrained = [](const M& m) {
       return m.model == MaterialModel::von_mises || m.model == MaterialModel::tresca;
@@ -170,7 +171,29 @@ const Table<MaterialParameters>& material_keys() {
     t.add("conductivity", conductivity(), &M::hydraulic_conductivity,
           "Saturated hydraulic conductivity k, or intrinsic permeability kappa, k = kappa density 9.81 / "
           "viscosity.");
-    t.later("retention", "unsaturated flow");
+    t.add("anisotropy", numbers(dimension::kNone, kPositive), &M::anisotropy,
+          "Factors on the conductivity along the axes of the grid, e.g. [1, 0.1]; without it 1.");
+    t.add("kozeny_carman", boolean(), &M::kozeny_carman,
+          "true: the conductivity follows the porosity, as n^3 / (1 - n)^2.");
+    const auto retains = [](const M& m) { return m.retains(); };
+    t.add("retention", retention(), &M::retention,
+          "Degree of saturation and relative conductivity against suction. A case with a retention curve "
+          "computes "
+          "unsaturated flow; a soil without one is saturated at any pressure.");
+    t.add("bishop",
+          choice<BishopFactor>({{"saturation", BishopFactor::saturation},
+                                {"effective-saturation", BishopFactor::effective_saturation},
+                                {"none", BishopFactor::none}}),
+          &M::bishop,
+          "Share chi of the suction in the effective stress (Bishop 1959): (S - S_r) / (1 - S_r), S or 0. S "
+          "times the "
+          "suction grows without bound as soil dries.")
+        .only_with("retention", "retention", retains);
+    t.add(
+         "capillary_suction", number(dimension::kPressure, kNotNegative), &M::capillary_suction,
+         "Suction at which all of capillary_cohesion acts; below it a proportional part. 0: all of it at any "
+         "suction.")
+        .only_with("retention", "retention", retains);
     t.check(check_density);
     t.check(check_dilation);
     t.check([](M& m, const std::string& path, Reader& reader) {
@@ -204,6 +227,12 @@ const Table<WaterSpec>& pore_water_keys() {
     t.add("suction_above", number(dimension::kPressure, kNotNegative), &W::suction_above,
           "Suction of the soil above the phreatic line.")
         .only_with("phreatic", "phreatic", with_line);
+    t.add("initial_saturation",
+          number(dimension::kNone, {.min = 0, .max = 1, .min_open = true, .max_open = true}),
+          &W::initial_saturation,
+          "With retention curves: degree of saturation at the start, above the reach of the water table; "
+          "without it "
+          "suction is hydrostatic.");
     t.add("initial",
           choice<W::Initial>({{"zero", W::Initial::zero},
                               {"hydrostatic", W::Initial::hydrostatic},

@@ -123,6 +123,7 @@ const Table<NumericsSpec>& numerics_keys() {
 
 const Table<Scene>& case_keys() {
   static const Table<Scene> table = [] {
+    std::string coupling::Material::*const material_name = &coupling::Material::name;
     Table<Scene> t;
     t.add("title", text(), &Scene::title, "What the case is, for people.");
     t.add(
@@ -142,14 +143,17 @@ const Table<Scene>& case_keys() {
           "How it is computed; the defaults are meant to be kept.");
     t.add("pore_water", one_table(pore_water_keys()), &Scene::water,
           "Properties and initial state of the pore water.");
-    t.add("material", named_tables(material_keys(), &mpm::MaterialParameters::name), &Scene::materials,
-          "Materials, by name.")
+    t.add("material", named_tables(material_keys(), material_name), &Scene::materials, "Materials, by name.")
         .required();
     t.add("body", list_of_tables(body_keys()), &Scene::bodies, "Bodies of one material each.").required();
     t.add("boundary", list_of_tables(boundary_keys()), &Scene::boundaries,
           "Mechanical boundaries. A side of the grid without one is a roller.");
     t.add("water", list_of_tables(water_keys()), &Scene::water_boundaries,
-          "Where water enters or leaves through the sides of the grid; the other sides are impermeable.");
+          "Where water enters or leaves: parts of the grid's sides, which are impermeable elsewhere, or of "
+          "the soil's "
+          "surface.");
+    t.add("water_line", list_of_tables(water_line_keys()), &Scene::water_lines,
+          "Wells, drains and impermeable sheets inside the soil (2D, with retention curves).");
     t.add("stage", list_of_tables(stage_keys()), &Scene::stages,
           "Stages of the simulation, one after the other.")
         .required();

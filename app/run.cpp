@@ -77,6 +77,7 @@ class Run {
   RunSummary summary_;
   double until_ = 0;
   double next_checkpoint_ = 0;  // wall clock [s]
+  std::size_t told_ = 0;        // events that the log has
 };
 
 constexpr const char* kReferencePrefix = "reference_";
@@ -170,6 +171,7 @@ void Run::restore() {
   frames_->visit(visitor);
   tables_.drop_after(simulation_.time());
   profiles_.drop_after(simulation_.time());
+  told_ = simulation_.events().size();
 }
 
 void Run::write_checkpoint() {
@@ -219,10 +221,17 @@ void Run::step() {
   const double before = clock_.seconds();
   simulation_.step();
   const double computed = clock_.seconds();
+  for (; told_ < simulation_.events().size(); ++told_) {
+    const coupling::Event& e = simulation_.events()[told_];
+    log_.line("stage " + e.stage + " at " + duration_text(e.time) + " (" + digits(e.time, 7) +
+              " s): " + e.text());
+  }
   tables_.see(simulation_);
   profiles_.see(simulation_);
   frames_->see(simulation_);
-  if (computed >= next_checkpoint_) write_checkpoint();
+  // A stage that fails must not cost the ones before it.
+  const bool stage_ended = simulation_.stage() != stage && !simulation_.finished();
+  if (computed >= next_checkpoint_ || stage_ended) write_checkpoint();
   const double after = clock_.seconds();
   summary_.stage_wall_seconds[index] += after - before;
   summary_.output_seconds += after - computed;

@@ -100,6 +100,20 @@ void write_summary(const Simulation& s, const RunFolder& folder, const RunSummar
   root["status"] = summary.status;
   if (!summary.message.empty()) root["message"] = summary.message;
   root["stages"] = stages(s, summary);
+  Json happened = Json::array();
+  for (const coupling::Event& e : s.events()) {
+    Json item = Json::object();
+    item["stage"] = e.stage;
+    item["event"] = e.is_failure() ? "failure" : "local failure";
+    item["time"] = e.time;
+    Json place = Json::array();
+    for (int d = 0; d < s.scene().dimension(); ++d) place.push_back(e.place[d]);
+    item["place"] = std::move(place);
+    item["displacement"] = e.displacement;
+    item["text"] = e.text();
+    happened.push_back(std::move(item));
+  }
+  root["events"] = std::move(happened);
   root["time"] = s.time();
 
   const coupling::Timing t = s.timing();

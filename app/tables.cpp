@@ -52,14 +52,20 @@ bool is_wet(const Scene& scene) {
   return coupling::find_formulation(scene.formulation)->carrier != coupling::WaterCarrier::none;
 }
 
-double history_interval(const Simulation& s) {
+// Where no stage says otherwise.
+double usual_interval(const Simulation& s) {
   const double every = s.scene().output.history_every;
   return every > 0 ? every : s.end_time() / kHistoryLines;
 }
 
+double history_interval(const Simulation& s, double usual) {
+  const double own = s.finished() ? 0 : s.scene().stages[static_cast<std::size_t>(s.stage())].history_every;
+  return own > 0 ? own : usual;
+}
+
 // The shortest interval any measure asks for; measures that ask for none follow the history.
-double probe_interval(const Simulation& s) {
-  double interval = history_interval(s);
+double probe_interval(const Simulation& s, double usual) {
+  double interval = history_interval(s, usual);
   for (const Measure& m : s.scene().measures)
     if (m.every > 0 && m.kind != Measure::Kind::history && !m.is_profile())
       interval = std::min(interval, m.every);
@@ -87,9 +93,10 @@ std::string measure_column(const Measure& m, bool& in_history) {
 }
 
 Tables::Tables(const Simulation& s, const RunFolder& folder, CsvWriter::Mode mode)
-    : history_tick_(history_interval(s)),
-      probe_tick_(probe_interval(s)),
-      phreatic_tick_(history_interval(s)) {
+    : usual_interval_(usual_interval(s)),
+      history_tick_(history_interval(s, usual_interval_)),
+      probe_tick_(probe_interval(s, usual_interval_)),
+      phreatic_tick_(history_interval(s, usual_interval_)) {
   const Scene& scene = s.scene();
   const std::vector<std::string> columns = history_columns(s);
   for (const Measure& m : scene.measures)
@@ -135,6 +142,11 @@ void Tables::see(const Simulation& s) {
   if (history_tick_.due(s.time()) || s.at_mark()) write_history(s);
   if (probe_tick_.due(s.time()) || s.at_mark()) write_probes(s);
   if (phreatic_tick_.due(s.time())) write_phreatic(s);
+  if (s.stage() == stage_) return;
+  stage_ = s.stage();
+  history_tick_.set_interval(history_interval(s, usual_interval_), s.time());
+  probe_tick_.set_interval(probe_interval(s, usual_interval_), s.time());
+  phreatic_tick_.set_interval(history_interval(s, usual_interval_), s.time());
 }
 
 void Tables::finish(const Simulation& s) {

@@ -42,6 +42,8 @@ class Tables {
   void write_probes(const coupling::Simulation& simulation);
   void write_phreatic(const coupling::Simulation& simulation);
 
+  int stage_ = 0;
+  double usual_interval_;  // between lines of the history, in stages that do not say [s]
   Ticker history_tick_, probe_tick_, phreatic_tick_;
   double last_history_ = -1, last_probes_ = -1;
   std::vector<int> probe_numbers_;  // particle followed by each measure, -1: none

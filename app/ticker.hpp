@@ -12,6 +12,13 @@ class Ticker {
   // every <= 0: never.
   explicit Ticker(double every) : every_(every) {}
 
+  // From now on another interval; nothing is due before the next multiple of it.
+  void set_interval(double every, double time) {
+    if (every == every_) return;
+    every_ = every;
+    count_ = every > 0 ? std::floor(time / every * (1 + kSlack)) + 1 : 0;
+  }
+
   // Whether a multiple has been reached since the last time; then the next one is waited for.
   bool due(double time) {
     if (!(time >= next())) return false;

@@ -74,16 +74,21 @@ template <int D>
 Totals Audit<D>::totals(const World<D>& world) const {
   Totals t;
   t.runout = t.height = -1e300;
+  const bool unsaturated = world.pore_water && world.pore_water->unsaturated;
+  const double per_density = 1 / world.scene.water.density;
   for (const auto& body : world.skeleton.bodies()) {
     const ParticleSet<D>& set = *body;
-    const mpm::MaterialParameters& m = world.scene.materials[set.material];
+    const mpm::MaterialParameters& m = world.materials[set.material];
     const double young = m.young, nu = m.poisson;
     for (int p = 0; p < set.slots(); ++p) {
       if (set.id[p] < 0) continue;
       const double pores = set.volume[p] - set.mass[p] / set.density_solid;
       const double mass = set.mass[p] + (set.pore_water.empty() ? 0.0 : set.pore_water[p] * pores);
       t.solid_mass += set.mass[p];
-      if (!set.wet.empty()) t.water_volume += set.wet[p] * pores;
+      if (unsaturated && !set.pore_water.empty())
+        t.water_volume += set.pore_water[p] * per_density * pores;
+      else if (!set.wet.empty())
+        t.water_volume += set.wet[p] * pores;
       double square = 0;
       for (int d = 0; d < D; ++d) {
         const double v = set.velocity[d][p];
@@ -149,7 +154,7 @@ double pressure_roughness(const PoreWater<D>& water) {
         n[0] += i, n[D - 1] += j;
         const int slot = grid.is_cell(n) ? grid.slot(n) : -1;
         inner = slot >= 0 && water.cells.active(slot);
-        if (inner) r += (i == 0 ? 2 : -1) * (j == 0 ? 2 : -1) * water.pressure.pressure()[slot] / 16;
+        if (inner) r += (i == 0 ? 2 : -1) * (j == 0 ? 2 : -1) * water.pore_pressure()[slot] / 16;
       }
     if (inner) sum += r * r, ++count;
   }

@@ -19,7 +19,7 @@ struct Work {         // cumulative [J]
 
 struct Totals {
   double solid_mass = 0;      // [kg]
-  double water_volume = 0;    // in the pores of saturated soil [m3]
+  double water_volume = 0;    // in the pores, of saturated soil where air is not modelled [m3]
   double kinetic_energy = 0;  // [J]
   double elastic_energy = 0;  // of the effective stress [J]
   std::array<double, 3> momentum{};

@@ -220,13 +220,27 @@ void add_body(const Scene& scene, const Body& body, World<D>& world) {
   }
 }
 
+template <int D>
+std::vector<fdm::Soil<D>> soils_of(const Scene& scene) {
+  std::vector<fdm::Soil<D>> soils;
+  for (const Material& m : scene.materials) {
+    fdm::Soil<D> s;
+    s.retention = m.retention;
+    for (int d = 0; d < D; ++d)
+      if (d < static_cast<int>(m.anisotropy.size())) s.anisotropy[d] = m.anisotropy[d];
+    soils.push_back(std::move(s));
+  }
+  return soils;
+}
+
 }  // namespace
 
 template <int D>
 World<D>::World(Scene s, Grid<D> grid, const mpm::SkeletonOptions& options, mpm::BoundarySet<D> boundaries)
     : scene(std::move(s)), skeleton(std::move(grid), options, std::move(boundaries)) {
   mark_scatter(scene);
-  for (const mpm::MaterialParameters& m : scene.materials) layouts.push_back(mpm::state_layout(m, D));
+  materials = scene.skeleton_materials();
+  for (const mpm::MaterialParameters& m : materials) layouts.push_back(mpm::state_layout(m, D));
   for (int d = 0; d < D; ++d) gravity[d] = scene.gravity[d];
 }
 
@@ -250,11 +264,14 @@ std::unique_ptr<World<D>> build_world(const Scene& scene) {
     water.bulk_modulus = scene.water.bulk_modulus;
     water.gravity = world->gravity;
     world->pore_water = std::make_unique<PoreWater<D>>(world->skeleton.grid(), scene.grid.space, water);
+    if (scene.unsaturated())
+      world->pore_water->unsaturated =
+          std::make_unique<UnsaturatedWater<D>>(world->pore_water->cells, water, soils_of<D>(scene));
     world->pore_water->pressure.set_tolerance(scene.numerics.solver_tolerance);
     set_saturation(*world);
   }
-  set_initial_stress(*world);
-  world->skeleton.set_laws(world->scene.materials, true);
+  if (!scene.unsaturated()) set_initial_stress(*world);  // else when the suction is known
+  world->skeleton.set_laws(world->materials, true);
   world->skeleton.sort(true);
   return world;
 }

@@ -37,7 +37,7 @@ template <int D>
 void Simulation::Run<D>::relax_step() {
   const Stage& spec = present();
   if (!relaxation) begin_relaxation();
-  if (stage_steps % 64 == 0) wave_speed = world->skeleton.wave_speed(scene.materials);
+  if (stage_steps % 64 == 0) wave_speed = world->skeleton.wave_speed(world->materials);
   dt = world->skeleton.grid().spacing() / wave_speed;
   reason = "relaxation";
   const double gravity =

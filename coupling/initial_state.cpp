@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/error.hpp"
 #include "core/threads.hpp"
 #include "coupling/body_shape.hpp"
+#include "coupling/unsaturated.hpp"
 
 namespace polder::coupling {
 namespace {
@@ -22,9 +24,10 @@ double water_table(const WaterSpec& water, const Vector3& x) {
   return height_at(water.phreatic, x[0]);
 }
 
-// Total vertical stress at x, compression positive, from the weight above.
+// Total vertical stress at x, compression positive, from the weight above. saturation: degree of it at a
+// place, where pores may hold air; else pores are full below the phreatic line.
 double overburden(const Scene& scene, const std::vector<BodyShape>& shapes, const Vector3& x, int up,
-                  bool wet) {
+                  bool wet, const std::function<double(const Vector3&)>& saturation) {
   double g = 0;
   for (int d = 0; d < 3; ++d) g += scene.gravity[d] * scene.gravity[d];
   g = std::sqrt(g);
@@ -36,7 +39,15 @@ double overburden(const Scene& scene, const std::vector<BodyShape>& shapes, cons
       if (high <= low) continue;
       const double dry = m.dry_density(), pores = m.porosity * scene.water.density;
       double density = dry * (high - low);
-      if (wet && m.porosity > 0) {
+      if (wet && m.porosity > 0 && saturation) {
+        const int pieces = static_cast<int>(std::ceil(2 * (high - low) / scene.grid.cell));
+        const double length = (high - low) / pieces;
+        Vector3 at = x;
+        for (int i = 0; i < pieces; ++i) {
+          at[up] = low + (i + 0.5) * length;
+          density += pores * length * saturation(at);
+        }
+      } else if (wet && m.porosity > 0) {
         const double table =
             scene.water.phreatic.empty() ? high : std::clamp(water_table(scene.water, x), low, high);
         density += pores * ((table - low) + scene.water.saturation_above * (high - table));
@@ -78,7 +89,7 @@ void set_saturation(World<D>& world) {
   const WaterSpec& water = world.scene.water;
   for (auto& body : world.skeleton.bodies()) {
     ParticleSet<D>& set = *body;
-    const mpm::MaterialParameters& m = world.scene.materials[set.material];
+    const Material& m = world.scene.materials[set.material];
     if (m.porosity <= 0) continue;
     const int capillary = world.layouts[set.material].capillary_factor;
     const int n = set.slots();
@@ -86,7 +97,13 @@ void set_saturation(World<D>& world) {
     set.wet.assign(n, 1.0);
     if (set.conductivity.empty())
       set.conductivity.assign(n, m.hydraulic_conductivity);  // else a random field
+    if (m.kozeny_carman)
+      for (double& k : set.conductivity) k /= kozeny_carman(m.porosity);
     if (capillary >= 0) std::fill(set.state[capillary].begin(), set.state[capillary].end(), 0.0);
+    if (world.pore_water->unsaturated) {  // set_unsaturated_state() fills it in
+      set.suction_stress.assign(n, 0.0);
+      continue;
+    }
     if (water.phreatic.empty()) continue;
     if (water.suction_above != 0) set.suction_stress.assign(n, 0.0);
     for (int p = 0; p < n; ++p) {
@@ -104,6 +121,17 @@ void set_initial_stress(World<D>& world) {
   const Scene& scene = world.scene;
   const std::vector<BodyShape> shapes = shapes_of(scene);
   const bool wet = world.pore_water != nullptr;
+  const PoreWater<D>* unsaturated = wet && world.pore_water->unsaturated ? world.pore_water.get() : nullptr;
+  std::function<double(const Vector3&)> saturation;
+  if (unsaturated != nullptr)
+    saturation = [&](const Vector3& x) {
+      Index<D> cell;
+      for (int d = 0; d < D; ++d)
+        cell[d] = static_cast<int>(std::floor((x[d] - scene.grid.origin[d]) / scene.grid.cell));
+      const int slot = world.skeleton.grid().is_cell(cell) ? world.skeleton.grid().slot(cell) : -1;
+      return slot >= 0 && unsaturated->cells.active(slot) ? unsaturated->unsaturated->field.saturation()[slot]
+                                                          : 1.0;
+    };
   constexpr int kUp = D - 1, kVertical = D == 2 ? 1 : 2;  // component of the vertical stress
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const InitialStress& initial = scene.bodies[b].stress;
@@ -116,9 +144,11 @@ void set_initial_stress(World<D>& world) {
       } else if (initial.kind == InitialStress::Kind::k0) {
         const bool full = wet && !set.wet.empty() && set.wet[p] > 0;
         double pressure = 0;
-        if (full)
+        if (unsaturated != nullptr)
+          pressure = set.wet.empty() ? 0.0 : pushing_pressure_at(world, set, p);
+        else if (full)
           pressure = std::max(0.0, world.unit_weight() * (pressure_datum(scene, shapes, x, kUp) - x[kUp]));
-        double total = overburden(scene, shapes, x, kUp, wet);
+        double total = overburden(scene, shapes, x, kUp, wet, saturation);
         if (full && scene.water.outside_level)  // open water standing on the surface
           total += world.unit_weight() * std::max(0.0, scene.water.outside_level->at(0) -
                                                            shapes[b].vertical_intervals(x).back().second);
@@ -134,16 +164,13 @@ void set_initial_stress(World<D>& world) {
 }
 
 template <int D>
-void set_initial_pressure(World<D>& world) {
-  PoreWater<D>& water = *world.pore_water;
+void set_cell_pressure(const World<D>& world, Reals& p) {
+  const PoreWater<D>& water = *world.pore_water;
   const Scene& scene = world.scene;
-  Reals& p = water.pressure.pressure();
+  const bool suction = water.unsaturated != nullptr;
   switch (scene.water.initial) {
     case WaterSpec::Initial::zero:
       std::fill(p.begin(), p.end(), 0.0);
-      break;
-    case WaterSpec::Initial::steady:
-      water.pressure.steady(water.darcy_mobility);
       break;
     case WaterSpec::Initial::field:
       for (const fdm::ActiveCell<D>& cell : water.cells.cells())
@@ -151,18 +178,30 @@ void set_initial_pressure(World<D>& world) {
                        scene.water.initial_gradient *
                            (water.cells.centre(cell.index)[D - 1] - scene.water.initial_datum);
       break;
+    case WaterSpec::Initial::steady:  // begins from here where it is found step by step
     case WaterSpec::Initial::hydrostatic: {
       const std::vector<BodyShape> shapes = shapes_of(scene);
       for (const fdm::ActiveCell<D>& cell : water.cells.cells()) {
         Vector3 x{};
         const Point<D> c = water.cells.centre(cell.index);
         for (int d = 0; d < D; ++d) x[d] = c[d];
-        p[cell.slot] =
-            std::max(0.0, world.unit_weight() * (pressure_datum(scene, shapes, x, D - 1) - x[D - 1]));
+        const double hydrostatic = world.unit_weight() * (pressure_datum(scene, shapes, x, D - 1) - x[D - 1]);
+        p[cell.slot] = suction ? hydrostatic : std::max(0.0, hydrostatic);
       }
       break;
     }
   }
+}
+
+template <int D>
+void set_initial_pressure(World<D>& world) {
+  PoreWater<D>& water = *world.pore_water;
+  if (water.unsaturated)
+    set_unsaturated_state(world);
+  else if (world.scene.water.initial == WaterSpec::Initial::steady)
+    water.pressure.steady(water.darcy_mobility);
+  else
+    set_cell_pressure(world, water.pressure.pressure());
 }
 
 template <int D>
@@ -188,10 +227,11 @@ void wet_points(World<D>& world) {
   }
 }
 
-#define POLDER_INSTANTIATE(D)                       \
-  template void set_saturation<D>(World<D>&);       \
-  template void set_initial_stress<D>(World<D>&);   \
-  template void set_initial_pressure<D>(World<D>&); \
+#define POLDER_INSTANTIATE(D)                                  \
+  template void set_saturation<D>(World<D>&);                  \
+  template void set_initial_stress<D>(World<D>&);              \
+  template void set_cell_pressure<D>(const World<D>&, Reals&); \
+  template void set_initial_pressure<D>(World<D>&);            \
   template void wet_points<D>(World<D>&);
 POLDER_INSTANTIATE(2)
 POLDER_INSTANTIATE(3)

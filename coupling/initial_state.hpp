@@ -12,9 +12,15 @@ void set_saturation(World<D>& world);
 
 // K0: vertical total stress from the weight of everything above the point (grains, pore water by its
 // saturation), minus the pore pressure below the phreatic line, times K0 of the point's layer in the
-// horizontal; suction adds an isotropic effective compression S s. Or the given field.
+// horizontal; suction adds an isotropic effective compression S s. Or the given field. Where pores may hold
+// air the pressure of the cells must have been set.
 template <int D>
 void set_initial_stress(World<D>& world);
+
+// Pressure of the cells [Pa, slots] at rest below the water table, or the given field; where there may be
+// suction it goes on above the table.
+template <int D>
+void set_cell_pressure(const World<D>& world, Reals& pressure);
 
 // Pore pressure under the present conditions: zero, hydrostatic below the phreatic line, steady flow, or the
 // given field.

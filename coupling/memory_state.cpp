@@ -28,16 +28,6 @@ void MemoryState::count(const std::string& name, std::int64_t& value) {
   else
     counts[name] = value;
 }
-void MemoryState::save(Simulation& simulation) {
-  reading_ = false;
-  simulation.visit(*this);
-}
-void MemoryState::load(Simulation& simulation) {
-  reading_ = true;
-  simulation.visit(*this);
-  reading_ = false;
-}
-
 std::vector<std::string> MemoryState::differences(const MemoryState& other) const {
   std::vector<std::string> names;
   const auto compare = [&](const auto& mine, const auto& theirs, const auto& same) {

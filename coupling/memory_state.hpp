@@ -1,4 +1,4 @@
-// The state of a simulation in memory: what a checkpoint keeps, to be compared bit by bit or loaded again.
+// The state of a simulation in memory: what a checkpoint keeps, to go back to it or to compare it bit by bit.
 #pragma once
 
 #include <map>
@@ -17,8 +17,18 @@ class MemoryState final : public StateVisitor {
   void number(const std::string& name, double& value) override;
   void count(const std::string& name, std::int64_t& value) override;
 
-  void save(Simulation& simulation);
-  void load(Simulation& simulation);
+  // Of a Simulation, or of anything else that a visitor may visit.
+  template <class Visited>
+  void save(Visited& visited) {
+    reading_ = false;
+    visited.visit(*this);
+  }
+  template <class Visited>
+  void load(Visited& visited) {
+    reading_ = true;
+    visited.visit(*this);
+    reading_ = false;
+  }
   // Names of what differs, bit by bit.
   std::vector<std::string> differences(const MemoryState& other) const;
 

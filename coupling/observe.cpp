@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/error.hpp"
+#include "coupling/quantities.hpp"
 #include "coupling/simulation_run.hpp"
 #include "mpm/point_stencil.hpp"
 #include "mpm/stress_recovery.hpp"
@@ -69,15 +70,28 @@ std::vector<Column> Simulation::Run<D>::history() const {
     add("water_outflow[m3]", water.outflow);
     double largest = 0;
     for (const auto& cell : water.cells.cells())
-      largest = std::max(largest, water.pressure.pressure()[cell.slot]);
+      largest = std::max(largest, water.pore_pressure()[cell.slot]);
     add("max_pore_pressure[Pa]", largest);
     add("pressure_roughness[Pa]", pressure_roughness(water));
-    const fdm::Discharge& q = water.pressure.discharge();
+    const fdm::Discharge& q = water.discharge();
     add("discharge:surface[m3/s]", q.surface);
     for (std::size_t b = 0; b < scene.water_boundaries.size(); ++b)
       add("discharge:" + scene.water_boundaries[b].name + "[m3/s]",
           b < q.boundary.size() ? q.boundary[b] : 0.0);
+    std::size_t wells = 0, drains = 0;
+    for (const WaterLine& line : scene.water_lines) {
+      if (line.kind == WaterLine::Kind::sheet) continue;
+      const std::vector<double>& flows = line.kind == WaterLine::Kind::well ? q.well : q.drain;
+      const std::size_t n = line.kind == WaterLine::Kind::well ? wells++ : drains++;
+      add("discharge:" + line.name + "[m3/s]", n < flows.size() ? flows[n] : 0.0);
+    }
     add("pressure_cells", static_cast<double>(water.cells.count()));
+    if (has_quasi_static_stage(scene)) {
+      add("relaxations", static_cast<double>(relaxations));
+      add("relaxation_steps", static_cast<double>(relaxation_steps));
+      add("unbalanced_relaxations", static_cast<double>(unbalanced_relaxations));
+      add("relaxation_water[m3]", relaxation_water);
+    }
   }
   return c;
 }
@@ -212,7 +226,7 @@ Profile Simulation::Run<D>::profile(const Measure& m) const {
     for (const auto& cell : water.cells.cells()) {
       const Point<D> centre = water.cells.centre(cell.index);
       add(centre, [&] {
-        const double p = water.pressure.pressure()[cell.slot];
+        const double p = water.pore_pressure()[cell.slot];
         return m.quantity == "head" ? p / world->unit_weight() + centre[D - 1] : p;
       });
     }
@@ -256,7 +270,7 @@ double Simulation::Run<D>::cell_quantity(const Vector3& at, const std::string& q
       }
       const int slot = grid.slot(cell);
       if (slot < 0 || !water.cells.active(slot)) continue;
-      sum += w * water.pressure.pressure()[slot], weight += w;
+      sum += w * water.pore_pressure()[slot], weight += w;
     }
     return weight > 0 ? sum / weight : 0.0;
   }
@@ -265,7 +279,7 @@ double Simulation::Run<D>::cell_quantity(const Vector3& at, const std::string& q
     cell[d] = static_cast<int>(std::floor((at[d] - grid.origin()[d]) / grid.spacing()));
   const int slot = grid.is_cell(cell) ? grid.slot(cell) : -1;
   if (slot < 0 || !water.cells.active(slot)) return kNone;
-  const double p = water.pressure.pressure()[slot];
+  const double p = water.pore_pressure()[slot];
   if (quantity == "pore_pressure") return p;
   if (quantity == "head") return p / world->unit_weight() + water.cells.centre(cell)[D - 1];
   throw InputError("cell quantity '" + quantity + "' is unknown");
@@ -348,7 +362,7 @@ CellFrame Simulation::Run<D>::water_cells() const {
       }
       f.corners.push_back(vertex[slot]);
     }
-    const double p = water.pressure.pressure()[cell.slot];
+    const double p = water.pore_pressure()[cell.slot];
     f.fields[0].values.push_back(p);
     f.fields[1].values.push_back(p / world->unit_weight() + water.cells.centre(cell.index)[D - 1]);
     f.fields[2].values.push_back(water.fill[cell.slot]);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/error.hpp"
 #include "core/threads.hpp"
 #include "coupling/initial_state.hpp"
 #include "coupling/stopwatch.hpp"
+#include "coupling/unsaturated.hpp"
 
 namespace polder::coupling {
 namespace {
@@ -13,25 +15,82 @@ namespace {
 constexpr int kWettingInterval = 16;  // steps between two looks for points that water has reached
 
 template <int D>
+fdm::WaterBoundary<D> condition_of(const WaterBoundary& b, double time, bool unsaturated) {
+  using To = typename fdm::WaterBoundary<D>::Kind;
+  fdm::WaterBoundary<D> w;
+  w.name = b.name;
+  w.side = b.side == WaterBoundary::kOnSurface ? fdm::kFreeSurface : b.side;
+  w.value = b.value.at(time);
+  switch (b.kind) {
+    case WaterBoundary::Kind::head:
+      w.kind = To::head;
+      w.seepage_above = unsaturated;
+      break;
+    case WaterBoundary::Kind::pressure:
+      w.kind = To::pressure;
+      break;
+    case WaterBoundary::Kind::impermeable:
+      w.kind = To::impermeable;
+      break;
+    case WaterBoundary::Kind::surface:
+      w.kind = unsaturated ? To::atmosphere : To::surface;
+      break;
+    case WaterBoundary::Kind::flux:
+      w.kind = To::flux;
+      break;
+    case WaterBoundary::Kind::rain:
+      w.kind = To::atmosphere;
+      break;
+    case WaterBoundary::Kind::evaporation:
+      w.kind = To::atmosphere;
+      w.value = -w.value;
+      w.limiting_pressure = -b.limit_suction;
+      break;
+    case WaterBoundary::Kind::seepage_face:
+      w.kind = To::atmosphere;
+      w.value = 0;
+      break;
+  }
+  if (w.kind == To::atmosphere && b.kind == WaterBoundary::Kind::surface) w.value = 0;
+  for (int d = 0; d < D; ++d) {
+    if (b.from) w.from[d] = std::min((*b.from)[d], b.to ? (*b.to)[d] : (*b.from)[d]);
+    if (b.to) w.to[d] = std::max((*b.to)[d], b.from ? (*b.from)[d] : (*b.to)[d]);
+  }
+  return w;
+}
+
+template <int D>
+void add_line(const WaterLine& line, double time, fdm::WaterConditions<D>& c) {
+  std::vector<Point<D>> points;
+  for (const Vector3& corner : line.line) {
+    Point<D> x;
+    for (int d = 0; d < D; ++d) x[d] = corner[d];
+    points.push_back(x);
+  }
+  switch (line.kind) {
+    case WaterLine::Kind::well: {
+      fdm::WaterWell<D> well{line.name, points, -line.rate.at(time)};
+      if (line.limit_pressure) well.limiting_pressure = *line.limit_pressure;
+      c.wells.push_back(std::move(well));
+      break;
+    }
+    case WaterLine::Kind::drain:
+      c.drains.push_back({line.name, points, line.limit_pressure.value_or(0)});
+      break;
+    case WaterLine::Kind::sheet:
+      c.sheets.push_back({line.name, points});
+      break;
+  }
+}
+
+template <int D>
 fdm::WaterConditions<D> conditions_at(const World<D>& world, double time) {
   fdm::WaterConditions<D> c;
   c.unit_weight = world.unit_weight();
   if (world.scene.water.outside_level) c.outside_level = world.scene.water.outside_level->at(time);
-  for (const WaterBoundary& b : world.scene.water_boundaries) {
-    fdm::WaterBoundary<D> w;
-    w.name = b.name;
-    w.side = b.side;
-    w.value = b.value.at(time);
-    w.kind = b.kind == WaterBoundary::Kind::head       ? fdm::WaterBoundary<D>::Kind::head
-             : b.kind == WaterBoundary::Kind::pressure ? fdm::WaterBoundary<D>::Kind::pressure
-             : b.kind == WaterBoundary::Kind::surface  ? fdm::WaterBoundary<D>::Kind::surface
-                                                       : fdm::WaterBoundary<D>::Kind::impermeable;
-    for (int d = 0; d < D; ++d) {
-      if (b.from) w.from[d] = std::min((*b.from)[d], b.to ? (*b.to)[d] : (*b.from)[d]);
-      if (b.to) w.to[d] = std::max((*b.to)[d], b.from ? (*b.from)[d] : (*b.to)[d]);
-    }
-    c.boundaries.push_back(std::move(w));
-  }
+  for (const WaterBoundary& b : world.scene.water_boundaries)
+    c.boundaries.push_back(condition_of<D>(b, time, world.pore_water->unsaturated != nullptr));
+  for (const WaterLine& line : world.scene.water_lines) add_line(line, time, c);
   return c;
 }
 
@@ -52,7 +111,37 @@ void pressure_push(const mpm::Skeleton<D>& skeleton, const Reals& gradient, doub
   });
 }
 
+// Where soil full of water lies on a wall, nothing can come between them.
+template <int D>
+void seal_walls(World<D>& world) {
+  PoreWater<D>& w = *world.pore_water;
+  if (!w.unsaturated && w.sealed_revision == w.cells.revision()) return;
+  w.sealed_revision = w.cells.revision();
+  std::vector<std::uint8_t> sealed(world.skeleton.grid().slots(), 0);
+  const Reals* positive = w.unsaturated ? &w.unsaturated->pushing : nullptr;
+  for (const fdm::ActiveCell<D>& cell : w.cells.cells())
+    if (positive == nullptr || (*positive)[cell.slot] > 0)
+      for (int node : cell.nodes) sealed[node] = 1;
+  world.skeleton.boundaries().set_sealed(std::move(sealed));
+}
+
+template <int D>
+void node_gradient(PoreWater<D>& w, const Reals& field, fdm::BoundaryValues values, Reals& out) {
+  if (w.unsaturated)
+    w.unsaturated->field.node_gradient(field, values, fdm::WallNormal::inward, out);
+  else
+    w.pressure.node_gradient(field, values, fdm::WallNormal::inward, out);
+}
+
 }  // namespace
+
+template <int D>
+void carry_water(World<D>& world) {
+  if (world.pore_water->unsaturated)
+    carry_unsaturated(world);
+  else
+    world.pore_water->pressure.carry();
+}
 
 template <int D>
 void update_water_cells(World<D>& world, double end) {
@@ -63,6 +152,7 @@ void update_water_cells(World<D>& world, double end) {
   const int slots = grid.slots();
   for (Reals* r : {&w.fill, &w.porosity, &w.darcy_mobility}) r->resize(slots);
   const double cell = std::pow(grid.spacing(), D), unit_weight = world.unit_weight();
+  const bool follows_porosity = world.scene.kozeny_carman();
   const bool radial = world.scene.grid.space == Space::axisymmetric;
   parallel_for(grid.blocks(), [&](int block) {
     for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
@@ -73,27 +163,57 @@ void update_water_cells(World<D>& world, double end) {
       w.fill[i] = s[0] / volume;
       w.porosity[i] = some ? std::clamp(1 - s[1] / s[0], 0.05, 0.95) : 0.0;
       w.darcy_mobility[i] = some ? s[2] / s[0] / unit_weight : 0.0;
+      if (some && follows_porosity) w.darcy_mobility[i] *= kozeny_carman(w.porosity[i]);
     }
   });
   w.conditions = conditions_at(world, end);
   w.cells.update(w.fill, w.conditions);
-  w.pressure.refresh();
-  if (w.sealed_revision == w.cells.revision()) return;
-  w.sealed_revision = w.cells.revision();
-  std::vector<std::uint8_t> sealed(slots, 0);
-  for (const fdm::ActiveCell<D>& cell : w.cells.cells())
-    for (int node : cell.nodes) sealed[node] = 1;
-  world.skeleton.boundaries().set_sealed(std::move(sealed));
+  if (w.unsaturated)
+    update_unsaturated_cells(world);
+  else
+    w.pressure.refresh();
+  seal_walls(world);
 }
 
 template <int D>
 void push_by_pressure(World<D>& world) {
   PoreWater<D>& w = *world.pore_water;
   w.node_gradient.resize(static_cast<std::size_t>(world.skeleton.grid().slots()) * 4);
-  w.pressure.node_gradient(w.pressure.pressure(), fdm::BoundaryValues::present, fdm::WallNormal::inward,
-                           w.node_gradient);
+  node_gradient(w, w.pushing_pressure(), fdm::BoundaryValues::present, w.node_gradient);
   pressure_push(world.skeleton, w.node_gradient, 1.0, w.acceleration);
 }
+
+namespace {
+
+template <int D>
+void solve_pressure(World<D>& world, double dt, const Reals& strain_velocity) {
+  PoreWater<D>& w = *world.pore_water;
+  if (w.unsaturated) {
+    FlowInput flow;
+    flow.dt = dt;
+    flow.velocity = strain_velocity, flow.mobility = w.mobility, flow.pressure_gradient = w.node_gradient;
+    const fdm::StepReport report = flow_unsaturated(world, flow);
+    if (!report.converged)
+      throw NumericalError("the pore pressure of the step was not found in " +
+                           std::to_string(report.iterations) + " iterations: residual " +
+                           fdm::number(report.residual) + ", last change " +
+                           fdm::number(report.largest_change) + " Pa");
+    return;
+  }
+  fdm::PressureStep p;
+  p.dt = dt;
+  p.velocity = strain_velocity;
+  p.mobility = w.mobility;
+  p.porosity = w.porosity;
+  p.darcy_mobility = w.darcy_mobility;
+  p.rhie_chow = world.scene.numerics.rhie_chow;
+  p.pressure_gradient = w.node_gradient;
+  w.pressure.solve(p);
+  w.outflow += dt * w.pressure.discharge().total();
+  w.storage += dt * w.pressure.balance().storage;
+}
+
+}  // namespace
 
 template <int D>
 mpm::MoveResult step_one_layer(World<D>& world, const StepInput& in, long step) {
@@ -103,7 +223,7 @@ mpm::MoveResult step_one_layer(World<D>& world, const StepInput& in, long step) 
   Point<D> gravity = world.gravity;
   for (double& g : gravity) g *= in.gravity;
 
-  if (skeleton.sort()) w.pressure.carry();
+  if (skeleton.sort()) carry_water(world);
   update_water_cells(world, end);
   skeleton.scatter(end);
 
@@ -120,27 +240,18 @@ mpm::MoveResult step_one_layer(World<D>& world, const StepInput& in, long step) 
       const double* s = &sums[static_cast<std::size_t>(i) * 8];
       w.mobility[i] = s[0] > skeleton.mass_floor() ? in.dt * s[mpm::Transfer<D>::kVolume] / s[0] : 0.0;
     });
-    fdm::PressureStep p;
-    p.dt = in.dt;
-    p.velocity = strain_velocity;
-    p.mobility = w.mobility;
-    p.porosity = w.porosity;
-    p.darcy_mobility = w.darcy_mobility;
-    p.rhie_chow = world.scene.numerics.rhie_chow;
-    p.pressure_gradient = w.node_gradient;
     {
       Stopwatch watch(w.wall_seconds);
-      w.pressure.solve(p);
-      w.pressure.node_gradient(w.pressure.increment(), fdm::BoundaryValues::homogeneous,
-                               fdm::WallNormal::inward, w.node_gradient);
+      solve_pressure(world, in.dt, strain_velocity);
+      node_gradient(w, w.unsaturated ? w.unsaturated->field.increment() : w.pressure.increment(),
+                    fdm::BoundaryValues::homogeneous, w.node_gradient);
       pressure_push(skeleton, w.node_gradient, in.dt, w.correction);
     }
     skeleton.correct(end, in.dt, w.correction);
-    w.outflow += in.dt * w.pressure.discharge().total();
-    w.storage += in.dt * w.pressure.balance().storage;
+    if (w.unsaturated) update_suction(world);
   }
   const mpm::MoveResult moved = skeleton.gather(in.time, in.dt);
-  if (step % kWettingInterval == 0) wet_points(world);
+  if (!w.unsaturated && step % kWettingInterval == 0) wet_points(world);
   return moved;
 }
 
@@ -158,6 +269,7 @@ mpm::MoveResult step_dry(World<D>& world, const StepInput& in) {
 }
 
 #define POLDER_INSTANTIATE(D)                                                    \
+  template void carry_water<D>(World<D>&);                                       \
   template void update_water_cells<D>(World<D>&, double);                        \
   template void push_by_pressure<D>(World<D>&);                                  \
   template mpm::MoveResult step_one_layer<D>(World<D>&, const StepInput&, long); \

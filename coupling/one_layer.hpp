@@ -18,6 +18,10 @@ struct StepInput {
   bool water_flows = true;
 };
 
+// Moves the cells' fields after Skeleton::sort() returned true.
+template <int D>
+void carry_water(World<D>& world);
+
 // Cells, mask and boundary conditions for the time `end`; call after a sort or before reading cell fields.
 template <int D>
 void update_water_cells(World<D>& world, double end);

@@ -1,5 +1,7 @@
 #include "coupling/quantities.hpp"
 
+#include <algorithm>
+
 namespace polder::coupling {
 
 const std::vector<Quantity>& particle_quantities() {
@@ -50,6 +52,11 @@ const std::vector<Quantity>& frame_quantities() {
   return list;
 }
 
+bool has_quasi_static_stage(const Scene& scene) {
+  return std::any_of(scene.stages.begin(), scene.stages.end(),
+                     [](const Stage& s) { return s.mode == Stage::Mode::quasi_static; });
+}
+
 std::vector<Quantity> history_quantities(const Scene& scene) {
   const auto component = [](int d) { return std::string(1, "xyz"[d]); };
   std::vector<Quantity> list{{"time", "s"},
@@ -81,7 +88,14 @@ std::vector<Quantity> history_quantities(const Scene& scene) {
                              {"pressure_roughness", "Pa"},
                              {"discharge:surface", "m3/s"}});
     for (const WaterBoundary& w : scene.water_boundaries) list.push_back({"discharge:" + w.name, "m3/s"});
+    for (const WaterLine& w : scene.water_lines)
+      if (w.kind != WaterLine::Kind::sheet) list.push_back({"discharge:" + w.name, "m3/s"});
     list.push_back({"pressure_cells", ""});
+    if (has_quasi_static_stage(scene)) {
+      for (const char* name : {"relaxations", "relaxation_steps", "unbalanced_relaxations"})
+        list.push_back({name, ""});
+      list.push_back({"relaxation_water", "m3"});
+    }
   }
   return list;
 }

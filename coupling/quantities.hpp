@@ -24,4 +24,7 @@ const std::vector<Quantity>& frame_quantities();     // fields of the soil's fra
 // Columns of a scene's history, in their order: what Simulation::history() will give.
 std::vector<Quantity> history_quantities(const Scene& scene);
 
+// Then the history tells of its searches for equilibrium.
+bool has_quasi_static_stage(const Scene& scene);
+
 }  // namespace polder::coupling

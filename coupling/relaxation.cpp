@@ -63,7 +63,7 @@ void Relaxation<D>::find_masses() {
   mass_.assign(grid.slots(), 0.0);
   for (const auto& body : skeleton.bodies()) {
     const ParticleSet<D>& set = *body;
-    const double quarter = 0.25 * world_.scene.materials[set.material].wave_modulus();
+    const double quarter = 0.25 * world_.materials[set.material].wave_modulus();
     for (int p = 0; p < set.slots(); ++p) {
       if (set.id[p] < 0) continue;
       Point<D> x, l;
@@ -161,7 +161,7 @@ bool Relaxation<D>::step(double time, double gravity) {
   if (skeleton.sort()) {
     for (Reals* r : {&displacement_, &force_, &first_})
       if (!r->empty()) skeleton.grid().carry(*r, 4);
-    if (world_.pore_water) world_.pore_water->pressure.carry();
+    if (world_.pore_water) carry_water(world_);
     moved_ = std::numeric_limits<double>::infinity();
   }
   const bool refresh = moved_ > kRefresh;

@@ -45,4 +45,18 @@ const Formulation* find_formulation(const std::string& name) {
   return nullptr;
 }
 
+bool Scene::unsaturated() const {
+  const Formulation* f = find_formulation(formulation);
+  if (f == nullptr || f->carrier != WaterCarrier::cells) return false;
+  return std::any_of(materials.begin(), materials.end(), [](const Material& m) { return m.retains(); });
+}
+
+bool Scene::kozeny_carman() const {
+  return std::any_of(materials.begin(), materials.end(), [](const Material& m) { return m.kozeny_carman; });
+}
+
+std::vector<mpm::MaterialParameters> Scene::skeleton_materials() const {
+  return {materials.begin(), materials.end()};
+}
+
 }  // namespace polder::coupling

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/grid.hpp"
+#include "fdm/retention.hpp"
 #include "mpm/material/parameters.hpp"
 #include "mpm/shape_kind.hpp"
 
@@ -83,6 +84,33 @@ struct NumericsSpec {
   bool operator==(const NumericsSpec&) const = default;
 };
 
+// ---- materials
+// ------------------------------------------------------------------------------------------------------
+
+// Share of the suction that acts as effective stress, chi in sigma' = sigma - (1 - chi) u_a - chi u_w (Bishop
+// 1959): the effective degree of saturation (S - S_r)/(1 - S_r) (Lu, Godt & Wu 2010; chi s stays bounded as
+// soil dries), the whole one, or nothing of it.
+enum class BishopFactor { saturation, effective_saturation, none };
+
+// The skeleton's law (mpm) and what water finds in its pores (fdm).
+struct Material : mpm::MaterialParameters {
+  Material() = default;
+  Material(mpm::MaterialParameters skeleton) : mpm::MaterialParameters(std::move(skeleton)) {}  // implicit
+
+  fdm::Retention retention;        // saturated at any pressure unless given
+  std::vector<double> anisotropy;  // factors on the conductivity along the axes; empty: 1
+  bool kozeny_carman = false;      // conductivity follows the porosity, n^3 / (1 - n)^2
+  BishopFactor bishop = BishopFactor::effective_saturation;
+  double capillary_suction = 0;  // suction at which the capillary cohesion is all there [Pa]
+  bool retains() const { return retention.model != fdm::Retention::Model::saturated; }
+  bool operator==(const Material&) const = default;
+};
+
+// Kozeny (1927), Carman (1937): conductivity goes with n^3 / (1 - n)^2 of the porosity n.
+inline double kozeny_carman(double porosity) {
+  return porosity * porosity * porosity / ((1 - porosity) * (1 - porosity));
+}
+
 // ---- water
 // ----------------------------------------------------------------------------------------------------------
 
@@ -95,6 +123,8 @@ struct WaterSpec {
   std::vector<Vector3> phreatic;
   double saturation_above = 0;  // degree of saturation above it [-]
   double suction_above = 0;     // suction above it [Pa]
+  // With retention curves: degree of saturation above the phreatic line, or everywhere where there is none.
+  std::optional<double> initial_saturation;
   // Pore pressure below it at the start: none, at rest, steady flow under the conditions of time 0, or the
   // given field (undrained loading before the first stage, for example).
   enum class Initial { zero, hydrostatic, steady, field } initial = Initial::hydrostatic;
@@ -104,15 +134,42 @@ struct WaterSpec {
   bool operator==(const WaterSpec&) const = default;
 };
 
-// Where water may enter or leave through the sides of the grid; everywhere else the sides are impermeable.
+// Where water may enter or leave: a part of a side of the grid, or of the soil's own surface. Everywhere else
+// the sides are impermeable, and the soil's surface lets water out where it stands under pressure.
 struct WaterBoundary {
   std::string name;
-  // surface: the soil ends there as at its free surface (pressure of open water, else zero)
-  enum class Kind { head, pressure, impermeable, surface } kind = Kind::head;
-  int side = 0;                     // 2 * axis + (0 lower, 1 upper)
-  std::optional<Vector3> from, to;  // part of the side, whole side if absent
-  TimeTable value;                  // head: water level [m]; pressure: [Pa]
+  enum class Kind {
+    head,      // hydrostatic below the water level; above it a seepage face (unsaturated) or impermeable
+    pressure,  // one pore pressure
+    impermeable,
+    surface,      // of a side: the soil ends there as at its free surface
+    flux,         // water enters at a given rate whatever the soil can take
+    rain,         // the same as long as the soil can take it; what it cannot runs off. Acts on plan area
+    evaporation,  // water leaves at a given rate until the soil is as dry as the air
+    seepage_face  // water leaves where its pressure would be positive; none enters
+  } kind = Kind::head;
+  int side = 0;                     // 2 * axis + (0 lower, 1 upper); kOnSurface: the soil's free surface
+  std::optional<Vector3> from, to;  // part of the side or of the surface, all of it if absent
+  TimeTable value;                  // head: level [m]; pressure: [Pa]; flux, rain, evaporation: [m/s]
+  double limit_suction = 0;         // evaporation [Pa]
+  static constexpr int kOnSurface = -1;
   bool operator==(const WaterBoundary&) const = default;
+};
+
+// Lines inside the grid at which water is taken or given, or which it cannot cross; 2D only.
+struct WaterLine {
+  std::string name;
+  enum class Kind {
+    well,   // gives (rate > 0) or takes (rate < 0) water along its length
+    drain,  // takes water where its pressure exceeds that of the drain
+    sheet   // impermeable
+  } kind = Kind::drain;
+  std::vector<Vector3> line;  // corners of the polyline
+  TimeTable rate;             // well [m2/s, per metre of thickness]
+  // Well: pressure in it at which it takes or gives no more, none: no limit; drain: its pressure, else 0
+  // [Pa].
+  std::optional<double> limit_pressure;
+  bool operator==(const WaterLine&) const = default;
 };
 
 // ---- bodies
@@ -187,18 +244,34 @@ struct Boundary {
 
 struct Stage {
   std::string name;
-  enum class Mode { equilibrium, dynamic } mode = Mode::dynamic;
-  double duration = 0;             // simulated time [s]; equilibrium: at most
+  // seepage: the skeleton is rigid; quasi_static: it follows in equilibrium while water flows
+  enum class Mode { equilibrium, seepage, quasi_static, dynamic } mode = Mode::dynamic;
+  enum class Until { duration, failure, steady } until = Until::duration;
+  double duration = 0;             // simulated time [s]; with equilibrium or an event: at most
   double damping = 0;              // local damping alpha [0, 1); equilibrium with 0: relaxation
   bool plastic = true;             // false: materials respond elastically in this stage
   bool sticking = false;           // true: friction boundaries hold without slip in this stage
   bool water_flows = true;         // false: pore pressure stays as it is
   double gravity_ramp = 0;         // time over which gravity grows from 0 to its value [s]
-  double force_tolerance = 1e-3;   // equilibrium: out-of-balance force ratio
+  double force_tolerance = 1e-3;   // equilibrium, quasi_static: out-of-balance force ratio
   double energy_tolerance = 1e-3;  // equilibrium: kinetic energy ratio
   bool reset_displacement =
       false;  // at the end of the stage displacements (and plastic strains) start from zero
   bool reset_velocity = false;
+  double output_every = 0, history_every = 0;  // frames and lines of the history [s]; 0: as OutputSpec
+  // seepage, quasi_static: steps of the water [s]
+  double first_step = 0;      // 0: a hundred-thousandth of the duration
+  double largest_step = 0;    // 0: a hundredth of the duration
+  double steady_rate = 1e-9;  // seepage: change of the head with time that counts as none [m/s]
+  // quasi_static: equilibrium is sought whenever the pressure has changed by this much anywhere since the
+  // last time [Pa]; 0: two hundredths of the hydrostatic pressure over the height of the soil
+  double relax_change = 0;
+  // quasi_static: a point that has moved farther than this since the stage began is a local failure, and
+  // failure is when this share of the soil's volume has. 0: half a cell [m].
+  double failure_displacement = 0;
+  double failure_share = 0.01;
+  int relaxation_steps = 1500;  // quasi_static: most steps of one search for equilibrium
+  bool moves() const { return mode == Mode::equilibrium || mode == Mode::dynamic; }
   bool operator==(const Stage&) const = default;
 };
 
@@ -255,16 +328,21 @@ struct Scene {
   GridSpec grid;
   NumericsSpec numerics;
   WaterSpec water;
-  std::vector<mpm::MaterialParameters> materials;
+  std::vector<Material> materials;
   std::vector<Body> bodies;
   std::vector<Boundary> boundaries;
   std::vector<WaterBoundary> water_boundaries;
+  std::vector<WaterLine> water_lines;
   std::vector<Stage> stages;
   std::vector<Measure> measures;
   std::vector<Expectation> expectations;
   OutputSpec output;
 
   int dimension() const { return grid.space == Space::three_d ? 3 : 2; }
+  // Some material has a retention curve: water in cells is computed as unsaturated flow.
+  bool unsaturated() const;
+  bool kozeny_carman() const;  // conductivities follow the porosity, those of all porous materials or of none
+  std::vector<mpm::MaterialParameters> skeleton_materials() const;
   bool operator==(const Scene&) const = default;
 };
 

@@ -21,6 +21,26 @@ constexpr int kRestInterval = 20;    // steps between two looks at the equilibri
 constexpr int kWaveInterval = 64;    // steps between two looks at the wave speed
 constexpr double kSpeedShare = 0.2;  // of a cell that a particle may cross in one step
 
+const char* mode_name(Stage::Mode mode) {
+  switch (mode) {
+    case Stage::Mode::equilibrium:
+      return "equilibrium";
+    case Stage::Mode::seepage:
+      return "seepage";
+    case Stage::Mode::quasi_static:
+      return "quasi-static";
+    case Stage::Mode::dynamic:
+      break;
+  }
+  return "dynamic";
+}
+
+// How a stage ended, as a checkpoint keeps it.
+const std::vector<std::string>& endings() {
+  static const std::vector<std::string> list{"", "duration", "equilibrium", "failure", "steady"};
+  return list;
+}
+
 }  // namespace
 
 // ---- one dimension
@@ -33,16 +53,16 @@ Simulation::Run<D>::Run(const Scene& s) : world(build_world<D>(s)) {
     PoreWater<D>& water = *world->pore_water;
     update_water_cells(*world, 0.0);
     set_initial_pressure(*world);
-    wet_points(*world);
-    (void)water;
+    if (water.unsaturated)
+      set_initial_stress(*world);
+    else
+      wet_points(*world);
   }
   audit = std::make_unique<Audit<D>>(*world);
   const Totals t = audit->totals(*world);
   initial_solid_mass = t.solid_mass;
   initial_water_volume = t.water_volume;
-  for (const Stage& stage : scene.stages)
-    reports.push_back(
-        {stage.name, stage.mode == Stage::Mode::equilibrium ? "equilibrium" : "dynamic", 0, 0, ""});
+  for (const Stage& stage : scene.stages) reports.push_back({stage.name, mode_name(stage.mode), 0, 0, ""});
 }
 
 // Local damping enlarges a force against the motion by 1 + alpha, and shortens the stable step by the root of
@@ -55,12 +75,12 @@ double Simulation::Run<D>::courant_share() const {
 
 template <int D>
 double Simulation::Run<D>::automatic_step() const {
-  return courant_share() * world->skeleton.grid().spacing() / world->skeleton.wave_speed(scene.materials);
+  return courant_share() * world->skeleton.grid().spacing() / world->skeleton.wave_speed(world->materials);
 }
 
 template <int D>
 void Simulation::Run<D>::begin_stage() {
-  world->skeleton.set_laws(scene.materials, present().plastic);
+  world->skeleton.set_laws(world->materials, present().plastic);
   world->skeleton.boundaries().set_sticking(present().sticking);
   laws_set = true;
 }
@@ -87,10 +107,18 @@ void Simulation::Run<D>::step() {
   Stopwatch watch(timing.total);
   if (!laws_set) begin_stage();
   if (relaxes()) return relax_step();
+  if (present().moves())
+    step_motion();
+  else
+    step_water();
+}
+
+template <int D>
+void Simulation::Run<D>::step_motion() {
   const Stage& stage_spec = present();
   mpm::Skeleton<D>& skeleton = world->skeleton;
   const double h = skeleton.grid().spacing();
-  if (steps % kWaveInterval == 0) wave_speed = skeleton.wave_speed(scene.materials);
+  if (steps % kWaveInterval == 0) wave_speed = skeleton.wave_speed(world->materials);
 
   // Time step: a share of the skeleton wave's limit; never more than a share of a cell for the fastest point.
   double step_size = courant_share() * h / wave_speed;
@@ -181,6 +209,8 @@ void Simulation::Run<D>::end_stage(const std::string& by) {
   ++stage;
   stage_start = time;
   stage_steps = 0;
+  water_step = relax_change = 0;
+  locally_failed = false;
   laws_set = false;
 }
 
@@ -199,12 +229,13 @@ void Simulation::Run<D>::visit(StateVisitor& v) {
   integer("steps", steps), integer("stage_steps", stage_steps), integer("stage", stage);
   for (std::size_t s = 0; s < reports.size(); ++s) {
     const std::string n = "stage_" + std::to_string(s);
-    std::int64_t count = reports[s].steps, ended = reports[s].ended_by.empty()         ? 0
-                                                   : reports[s].ended_by == "duration" ? 1
-                                                                                       : 2;
+    std::int64_t count = reports[s].steps;
+    std::int64_t ended =
+        std::find(endings().begin(), endings().end(), reports[s].ended_by) - endings().begin();
     v.count(n + "_steps", count), v.number(n + "_time", reports[s].time), v.count(n + "_ended", ended);
-    reports[s].steps = count, reports[s].ended_by = ended == 0 ? "" : ended == 1 ? "duration" : "equilibrium";
+    reports[s].steps = count, reports[s].ended_by = endings().at(ended);
   }
+  visit_water_stage(v);
   int i = 0;
   for (double* x : audit->state()) v.number("audit_" + std::to_string(i++), *x);
 
@@ -240,19 +271,42 @@ void Simulation::Run<D>::visit(StateVisitor& v) {
         std::copy_n(coordinates.begin() + static_cast<std::ptrdiff_t>(k * D), D, vertices[k].begin());
   }
   if (world->pore_water) {
-    PoreWater<D>& water = *world->pore_water;
-    Reals pressure = water.pressure.pressure();
-    std::vector<int> pressure_cells = water.pressure.pressure_cells();
-    v.reals("pore_pressure", pressure), v.integers("pressure_cells", pressure_cells);
-    v.number("outflow", water.outflow), v.number("storage", water.storage);
-    if (v.reading()) {
-      water.pressure.carry();
-      update_water_cells(*world, time);
-      water.pressure.restore(pressure, pressure_cells);
-    }
+    visit_water(v);
   }
   visit_relaxation(v);
   if (v.reading()) laws_set = false;
+}
+
+template <int D>
+void Simulation::Run<D>::visit_water(StateVisitor& v) {
+  PoreWater<D>& water = *world->pore_water;
+  UnsaturatedWater<D>* unsaturated = water.unsaturated.get();
+  Reals pressure = water.pore_pressure(), saturation, points, active, travel;
+  std::vector<int> cells =
+      unsaturated ? unsaturated->field.pressure_cells() : water.pressure.pressure_cells();
+  v.reals("pore_pressure", pressure), v.integers("pressure_cells", cells);
+  v.number("outflow", water.outflow), v.number("storage", water.storage);
+  if (unsaturated) {
+    saturation = unsaturated->field.saturation();
+    points = unsaturated->point_saturation, active = unsaturated->was_active, travel = unsaturated->travel;
+    v.reals("saturation", saturation), v.reals("point_saturation", points), v.reals("was_active", active);
+    v.reals("travel", travel);
+  }
+  if (!v.reading()) return;
+  carry_water(*world);
+  if (unsaturated) {
+    // The cells follow the points when the next step begins, as they would have.
+    unsaturated->field.restore(pressure, saturation, cells);
+    unsaturated->point_saturation = points, unsaturated->was_active = active, unsaturated->travel = travel;
+    unsaturated->mapped = true;
+    unsaturated->soil_revision = 0;
+    update_water_cells(*world, time);
+    unsaturated->field.restore(pressure, saturation, cells);
+    unsaturated->point_saturation = points, unsaturated->was_active = active, unsaturated->travel = travel;
+  } else {
+    update_water_cells(*world, time);
+    water.pressure.restore(pressure, cells);
+  }
 }
 
 // ---- the interface
@@ -295,6 +349,9 @@ int Simulation::stage() const {
 }
 const std::vector<StageReport>& Simulation::stages() const {
   return run_->reports;
+}
+const std::vector<Event>& Simulation::events() const {
+  return run_->events;
 }
 bool Simulation::at_mark() const {
   return run_->marked;
@@ -385,9 +442,17 @@ std::vector<std::string> Simulation::skipped() const {
   if (find_formulation(scene.formulation)->carrier == WaterCarrier::none)
     s.push_back("pore water: the formulation has none, so no pressure cells, no solver, no porosity fields");
   else {
-    s.push_back("retention curve: soil below the phreatic line is saturated");
-    if (scene.water.phreatic.empty() || scene.water.suction_above == 0)
-      s.push_back("suction: the scene has none");
+    if (!scene.unsaturated()) {
+      s.push_back(
+          "retention curves: no material has one, so no curve is evaluated and suction does not change");
+      if (scene.water.phreatic.empty() || scene.water.suction_above == 0)
+        s.push_back("suction: the scene has none");
+    }
+    if (const long empty = run_->cells() - run_->pressure_cells(); empty > 0)
+      s.push_back("pressure in " + std::to_string(empty) + " stored cells without " +
+                  (scene.unsaturated() ? "porous" : "saturated") + " soil: not in the system");
+    if (std::none_of(scene.stages.begin(), scene.stages.end(), [](const Stage& t) { return t.moves(); }))
+      s.push_back("motion: no stage has any, so nothing is transferred between points and nodes");
     if (!scene.water.outside_level) s.push_back("open water on the surface: the scene has none");
   }
   s.push_back("discrete elements: the scene has none, so LIGGGHTS and MPI are not loaded");

@@ -71,7 +71,20 @@ struct StageReport {
   std::string name, mode;
   long steps = 0;
   double time = 0;       // simulated [s]
-  std::string ended_by;  // "duration", "equilibrium", "" while running
+  std::string ended_by;  // "duration", "equilibrium", "failure", "steady", "" while running
+};
+
+// Something that happened in a quasi-static stage (Stage::failure_displacement).
+struct Event {
+  enum class Kind { local_failure, failure } kind = Kind::local_failure;
+  std::string stage;
+  double time = 0;          // [s]
+  Vector3 place{};          // where the point that has moved farthest was when the stage began [m]
+  double displacement = 0;  // its displacement [m]
+  double share = 0;         // of the soil's volume that has moved as far as a failure
+  double force_ratio = 0;   // out-of-balance force ratio that the search for equilibrium was left with
+  bool is_failure() const { return kind == Kind::failure; }
+  std::string text() const;
 };
 
 struct StabilityOptions;  // strength_reduction.hpp
@@ -101,6 +114,7 @@ class Simulation {
   long steps() const;
   int stage() const;  // index, number of stages when finished
   const std::vector<StageReport>& stages() const;
+  const std::vector<Event>& events() const;  // in the order of time
   // The last step ended a stage or at the time of an expectation: what is looked at then must be recorded.
   bool at_mark() const;
   double last_step() const;                // dt [s]

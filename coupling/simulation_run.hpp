@@ -42,6 +42,12 @@ struct Simulation::Base {
   bool marked = false;    // the last step ended a stage or where an expectation looks
   std::vector<StageReport> reports;
   std::string reason;
+  // Seepage and quasi-static stages: the water's next step [s] (0: the stage's first), the change of pressure
+  // after which equilibrium is sought [Pa], what relaxation has done so far.
+  double water_step = 0, relax_change = 0, relaxation_water = 0;
+  std::int64_t relaxations = 0, relaxation_steps = 0, unbalanced_relaxations = 0;
+  bool locally_failed = false;
+  std::vector<Event> events;
   std::optional<StepLimit> limit;  // found when first asked for
   Timing timing;
 
@@ -59,6 +65,10 @@ struct Simulation::Run final : Simulation::Base {
   std::unique_ptr<Audit<D>> audit;
   std::unique_ptr<Relaxation<D>> relaxation;  // of an equilibrium stage that has begun
   double initial_solid_mass = 0, initial_water_volume = 0;
+  // Quasi-static stages: pressure of the cells when equilibrium was last sought, and where the points were
+  // when the stage began (by body, number and axis).
+  Reals relaxed_pressure;
+  std::vector<Reals> stage_position;
 
   explicit Run(const Scene& s);
   void step() override;
@@ -69,7 +79,7 @@ struct Simulation::Run final : Simulation::Base {
   long cells() const override { return world->skeleton.grid().slots(); }
   long pressure_cells() const override { return world->pore_water ? world->pore_water->cells.count() : 0; }
   const char* pressure_solver() const override {
-    return world->pore_water ? world->pore_water->pressure.solver_name() : "";
+    return world->pore_water ? world->pore_water->solver_name() : "";
   }
   int probe_particle(const Vector3& at) const override;
   double particle_quantity(int number, const std::string& quantity) const override;
@@ -84,6 +94,23 @@ struct Simulation::Run final : Simulation::Base {
 
  private:
   void begin_stage();
+  void step_motion();
+  void visit_water(StateVisitor& visitor);
+  void visit_water_stage(StateVisitor& visitor);
+  // Stages in which the water sets the pace (seepage_stage.cpp).
+  struct Displaced {
+    double largest = 0;  // displacement of any point since the stage began [m]
+    double share = 0;    // of the soil's volume that has moved farther than the limit
+    Vector3 place{};     // where the point that has moved farthest was when the stage began [m]
+  };
+  void step_water();
+  double flow(double left);
+  bool is_steady(const Reals& before, double step_size) const;
+  void begin_water_stage();
+  bool is_relaxation_due() const;
+  bool follow();
+  void fail();
+  Displaced displaced_soil(double limit) const;
   double next_mark(double stage_end) const;
   void end_stage(const std::string& by);
   void begin_relaxation();

@@ -54,15 +54,19 @@ Scene patch_of(const Scene& scene, const Body& body, bool wet) {
   s.gravity = {};
   mpm::MaterialParameters& m = s.materials[body.material];
   if (gravity > 0) m.hydraulic_conductivity *= kStandardGravity / std::sqrt(gravity);
+  for (Material& soil : s.materials) soil.retention = {};  // air in the pores only softens the water
   s.boundaries.clear();
   s.water_boundaries.clear();
+  s.water_lines.clear();
   s.water.phreatic.clear();
   s.water.outside_level.reset();
   s.water.initial = WaterSpec::Initial::zero;
   if (!wet) {
     s.formulation = "dry";
     // Soil above the phreatic line: its pore water is weight only.
-    const double water = m.porosity * scene.water.saturation_above * scene.water.density;
+    const double saturation =
+        scene.unsaturated() ? scene.water.initial_saturation.value_or(1.0) : scene.water.saturation_above;
+    const double water = m.porosity * saturation * scene.water.density;
     if (find_formulation(scene.formulation)->carrier != WaterCarrier::none)
       m.density_solid += water / (1 - m.porosity);
   }
@@ -73,8 +77,8 @@ template <int D>
 class Patch {
  public:
   explicit Patch(const Scene& scene) : world_(build_world<D>(scene)) {
-    world_->skeleton.set_laws(scene.materials, false);
-    wave_speed_ = world_->skeleton.wave_speed(scene.materials);
+    world_->skeleton.set_laws(world_->materials, false);
+    wave_speed_ = world_->skeleton.wave_speed(world_->materials);
     if (world_->pore_water) update_water_cells(*world_, 0.0);
     audit_ = std::make_unique<Audit<D>>(*world_);
   }
@@ -161,7 +165,7 @@ StabilityLimit find(const Scene& scene) {
     const mpm::MaterialParameters& m = scene.materials[body.material];
     const bool porous = water && m.porosity > 0;
     for (bool wet : {false, true}) {
-      if (wet ? !porous : porous && scene.water.phreatic.empty()) continue;
+      if (wet ? !porous : porous && scene.water.phreatic.empty() && !scene.unsaturated()) continue;
       double courant_number = 0;
       const double dt = limit_of<D>(patch_of<D>(scene, body, wet), courant_number);
       if (limit.dt == 0 || dt < limit.dt) limit = {dt, m.name, wet, courant_number};

@@ -62,8 +62,8 @@ mpm::MaterialParameters with_reduced_strength(const mpm::MaterialParameters& mat
 template <int D>
 StabilityTrial try_reduced_strength(World<D>& world, double factor, const StabilityOptions& options,
                                     double time) {
-  const std::vector<mpm::MaterialParameters> own = world.scene.materials;
-  for (mpm::MaterialParameters& m : world.scene.materials) {
+  const std::vector<mpm::MaterialParameters> own = world.materials;
+  for (mpm::MaterialParameters& m : world.materials) {
     m = with_reduced_strength(m, factor);
     m.young *= kStiffening;
   }
@@ -73,7 +73,7 @@ StabilityTrial try_reduced_strength(World<D>& world, double factor, const Stabil
     if (peak >= 0)
       for (double& v : body->state[peak]) v /= factor;
   }
-  skeleton.set_laws(world.scene.materials, true);
+  skeleton.set_laws(world.materials, true);
   skeleton.boundaries().set_sticking(false);
   skeleton.boundaries().set_friction_share(1 / factor);
   // Stress returns to the smaller yield surface; what it gave up is the load of the trial.
@@ -87,7 +87,7 @@ StabilityTrial try_reduced_strength(World<D>& world, double factor, const Stabil
   const RelaxationReport report = relax(world, r, time);
 
   skeleton.boundaries().set_friction_share(1);
-  world.scene.materials = own;
+  world.materials = own;
   skeleton.set_laws(own, true);
   StabilityTrial trial;
   trial.factor = factor;

@@ -38,10 +38,12 @@ struct Retention {
   struct Haverkamp {
     double saturation_factor = 0, saturation_exponent = 0;      // a [m^b], b
     double conductivity_factor = 0, conductivity_exponent = 0;  // A [m^B], B
+    bool operator==(const Haverkamp&) const = default;
   } haverkamp;
   // Tabulated: suction heads ascending [m], the others not rising. A point at zero suction (maximum, 1) is
   // added if there is none.
   std::vector<double> suction_head, saturation, relative_conductivity;
+  bool operator==(const Retention&) const = default;
 };
 
 // What is wrong with the parameters, one sentence each; empty if nothing is.

@@ -21,6 +21,11 @@
 #include "fdm/loops.hpp"
 
 namespace polder::fdm {
+namespace {
+
+constexpr double kAlmostFull = 1e-4;  // share of the pores that may be empty in a full cell
+
+}  // namespace
 
 template <int D>
 UnsaturatedField<D>::UnsaturatedField(const WaterCells<D>& cells, const WaterProperties<D>& water,
@@ -35,6 +40,11 @@ UnsaturatedField<D>::UnsaturatedField(const WaterCells<D>& cells, const WaterPro
   unit_weight_ = water.density * (g2 > 0 ? std::sqrt(g2) : 9.81);
   for (const Soil<D>& s : soils_) {
     curves_.emplace_back(s.retention, unit_weight_);
+    const RetentionCurve& curve = curves_.back();
+    full_suction_.push_back(curve.always_saturated() ? std::numeric_limits<double>::infinity()
+                                                     : -curve.pressure(s.retention.maximum -
+                                                                       kAlmostFull * (s.retention.maximum -
+                                                                                      s.retention.residual)));
     for (double a : s.anisotropy)
       if (!(a > 0)) throw InputError("unsaturated flow: the factors of anisotropy must be positive");
   }
@@ -127,9 +137,10 @@ void UnsaturatedField<D>::refresh() {
   std::fill(positive_.begin(), positive_.end(), 0.0);
   soil_.assign(n, -1);
   saturated_.assign(n, 0);
+  was_wet_.assign(n, 0);
   cell_.assign(n, {});
-  for (Reals* a : {&p_now_, &p_old_, &s_now_, &s_old_, &capacity_, &kr_, &positive_old_, &plus_change_,
-                   &projection_, &sink_, &rhs_, &diagonal_, &change_, &rounding_, &image_})
+  for (Reals* a : {&fringe_, &motion_, &p_now_, &p_old_, &s_now_, &s_old_, &capacity_, &kr_, &positive_old_,
+                   &plus_change_, &projection_, &sink_, &rhs_, &diagonal_, &change_, &rounding_, &image_})
     a->assign(n, 0);
   for (Reals* a : {&kappa_, &lambda_, &flow_, &conductance_}) a->assign(faces, 0);
   correction_.assign(interior, 0);
@@ -171,6 +182,7 @@ template <int D>
 double UnsaturatedField<D>::changed_pressure(int c, double d) const {
   constexpr double kLinear = 0.01;  // of |p|: storage is linear over this distance
   constexpr int kSections = 60;
+  if (inertia_) return changed_pressure_moving(c, d);
   const double before = p_now_[c], after = before + d;
   if (saturated_[c] || (before >= 0 && after >= 0) || std::abs(d) < kLinear * std::abs(before)) return after;
   const RetentionCurve& curve = curves_[soil_[c]];
@@ -194,6 +206,41 @@ double UnsaturatedField<D>::changed_pressure(int c, double d) const {
   return high;
 }
 
+// The same in moving soil, where links of motion L+ act while a cell is wet: the root of
+//   pores [S(p) - S_m] + L (p - p_m) + L+ (p+ - p+_m) = F,   F = D d, D the diagonal without what is not
+//   there yet.
+// A cell that fills goes at once to where its neighbours stop it, and one that empties to where its pores do.
+template <int D>
+double UnsaturatedField<D>::changed_pressure_moving(int c, double d) const {
+  constexpr int kSections = 60;
+  constexpr double kLinear = 0.01;  // of |p|: storage is linear over this distance
+  const double before = p_now_[c], after = before + d, full = -fringe_[c];
+  if (saturated_[c] || (before >= 0 && after >= 0)) return after;
+  if (before < full && after < full && std::abs(d) < kLinear * std::abs(before)) return after;
+  const RetentionCurve& curve = curves_[soil_[c]];
+  const double pores = cell_[c].pores, motion = motion_[c];
+  const double links = diagonal_[c] - pores * capacity_[c] - (wet(c) ? motion : 0.0);
+  const double force = diagonal_[c] * d;
+  const auto excess = [&](double p) {
+    return pores * (curve.saturation(p) - s_now_[c]) + links * (p - before) +
+           motion * (std::max(p, full) - std::max(before, full)) - force;
+  };
+  const double at_zero = excess(0);
+  if (at_zero <= 0) return -at_zero / (links + motion);
+  double high = 0, f_high = at_zero, low = std::min(before, -1.0), f_low = excess(low);
+  for (int i = 0; i < kSections && f_low > 0; ++i) high = low, f_high = f_low, low *= 2, f_low = excess(low);
+  if (f_low > 0) return low;
+  for (int i = 0; i < kSections && high - low > 1e-9 * std::abs(low); ++i) {  // Illinois
+    const double p = (low * f_high - high * f_low) / (f_high - f_low), f = excess(p);
+    if (f > 0) {
+      high = p, f_high = f, f_low *= 0.5;
+    } else {
+      low = p, f_low = f, f_high *= 0.5;
+    }
+  }
+  return 0.5 * (low + high);
+}
+
 // Moves p by the change that the linear system asks for; the largest move.
 template <int D>
 double UnsaturatedField<D>::advance() {
@@ -202,7 +249,11 @@ double UnsaturatedField<D>::advance() {
     image_[c] = p_now_[c] + relaxation_ * (changed_pressure(c, change_[c]) - p_now_[c]);
   });
   for (int c = 0; c < cells_.count(); ++c) largest = std::max(largest, std::abs(image_[c] - p_now_[c]));
-  acceleration_.next(p_now_, image_, diagonal_);
+  // The steps of moving soil are short: Newton's method alone is faster there.
+  if (inertia_)
+    std::copy(image_.begin(), image_.end(), p_now_.begin());
+  else
+    acceleration_.next(p_now_, image_, diagonal_);
   const double driest = -unit_weight_ * RetentionCurve::kDriestSuction;
   for (int c = 0; c < cells_.count(); ++c)
     if (!saturated_[c]) p_now_[c] = std::max(p_now_[c], driest);

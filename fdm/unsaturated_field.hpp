@@ -10,9 +10,12 @@
 // two cells, times the arithmetic mean of their k_r or the one upstream. Boundary faces:
 // fdm/boundary_flow.hpp.
 //
-// With a moving skeleton only water in saturated cells pushes back within the step: the mechanics takes
-// p+ = max(p, 0) as a gradient at the nodes, and suction as a stress of the particles. With v = v* - mobility
-// grad (p+^{n+1} - p+^n) at the faces, as in fdm/pressure_field.hpp, S D v stands for
+// With a moving skeleton only water in full cells pushes back within the step: the mechanics takes
+// p+ = max(p, -p_f) as a gradient at the nodes, and the rest of the suction as a stress of the particles. p_f
+// is the suction that leaves soil full but for a ten-thousandth of its pores, some ten to a hundred Pa:
+// between it and p = 0 pores store next to nothing, and a cell there that did not push would let its pressure
+// run away in the iteration. With v = v* - mobility grad (p+^{n+1} - p+^n) at the faces, as in
+// fdm/pressure_field.hpp, S D v stands for
 //   S_c (D v*)_c + S_c sum_f A_f/d_f Lam_f (1 + chi*) (dp+_c - dp+_e) - S_c chi sum_f A_f Lam_f [...],
 // and in a saturated scene the step is that of PressureField. Soil whose retention is `saturated` counts as
 // saturated under suction as well: p+ = p there.
@@ -125,10 +128,8 @@ class UnsaturatedField {
   const Reals& positive_pressure() const { return positive_; }  // p+ after the last step [Pa], slots
   const Reals& increment() const { return increment_; }  // p+^{n+1} - p+^n of the last step [Pa], slots
   const RetentionCurve& curve(int soil) const { return curves_[soil]; }
-  // Suction up to which a soil pushes [Pa]: p+ = max(p, -full_suction).
-  double full_suction(int soil) const {
-    return curves_[soil].always_saturated() ? std::numeric_limits<double>::infinity() : 0;
-  }
+  // Suction up to which a soil counts as full [Pa], infinite where retention is `saturated`.
+  double full_suction(int soil) const { return full_suction_[soil]; }
 
   StepReport solve(const UnsaturatedStep& step);
   // Steady flow through a resting skeleton from the present state, by implicit steps of growing length
@@ -179,12 +180,16 @@ class UnsaturatedField {
   void assemble_lines();
   Residual gather();
   void pin_closed_basins();
+  double changed_pressure_moving(int cell, double change) const;
   double changed_pressure(int c, double d) const;
   double advance();
   void accept();
   void update_gradient_faces();
-  bool wet(int cell) const { return p_now_[cell] > 0 || saturated_[cell]; }
-  double positive(int cell) const { return wet(cell) ? p_now_[cell] : 0; }
+  bool wet(int cell) const { return p_now_[cell] > -fringe_[cell]; }
+  // The momentum interpolation acts between cells that were full at the start of the step: it must not come
+  // and go in the iteration.
+  double chi_factor(int a, int b) const { return was_wet_[a] && was_wet_[b] ? 1 + chi_ : 1; }
+  double positive(int cell) const { return wet(cell) ? p_now_[cell] : -fringe_[cell]; }
   void require_current(std::size_t slots) const;
 
   const WaterCells<D>& cells_;
@@ -192,6 +197,7 @@ class UnsaturatedField {
   double unit_weight_ = 0;  // [N/m3]
   std::vector<Soil<D>> soils_;
   std::vector<RetentionCurve> curves_;
+  std::vector<double> full_suction_;
   std::unique_ptr<LinearSolver<D>> solver_;
   NodeGradient<D> gradient_;
   FaceWeighting weighting_ = FaceWeighting::mean;
@@ -207,6 +213,9 @@ class UnsaturatedField {
   // Active cells.
   std::vector<int> soil_;  // of each cell
   std::vector<std::vector<int>> cells_of_soil_;
+  Reals fringe_;                        // suction up to which a cell counts as full [Pa], see full_suction()
+  std::vector<unsigned char> was_wet_;  // at the start of the step
+  Reals motion_;                        // links of motion of a wet cell, in its diagonal
   std::vector<unsigned char> saturated_;  // retention `saturated`
   std::vector<Cell> cell_;
   Reals p_now_, p_old_, s_now_, s_old_, capacity_, kr_;

@@ -52,6 +52,7 @@ void UnsaturatedField<D>::prepare(const UnsaturatedStep& step) {
     cell_[c].pores = step.porosity[slot] * volume;
     cell_[c].elastic = (step.porosity[slot] / water_.bulk_modulus + skeleton) * volume;
     cell_[c].source = inertia_ ? cell_outflow<D>(cells[c], step.velocity) : 0;
+    was_wet_[c] = wet(c);
     positive_old_[c] = positive(c);
     projection_[c] = 0;
   });
@@ -77,6 +78,7 @@ void UnsaturatedField<D>::prepare_soils(const UnsaturatedStep& step) {
       throw std::logic_error("UnsaturatedField: a cell names a soil that is not in the list");
     soil_[c] = soil;
     saturated_[c] = curves_[soil].always_saturated();
+    fringe_[c] = full_suction_[soil];
     cells_of_soil_[soil].push_back(c);
   }
 }
@@ -234,7 +236,7 @@ void UnsaturatedField<D>::assemble() {
     const double conductance = kappa_[i] * kr;
     flow_[i] = conductance * difference;
     conductance_[i] = conductance;
-    if (inertia_ && wet(f.low) && wet(f.high)) conductance_[i] += lambda_[i] * (1 + chi_);
+    if (inertia_ && wet(f.low) && wet(f.high)) conductance_[i] += lambda_[i] * chi_factor(f.low, f.high);
   });
   for (std::size_t b = 0; b < boundary.size(); ++b) {
     const int c = boundary[b].cell;
@@ -256,7 +258,7 @@ typename UnsaturatedField<D>::Residual UnsaturatedField<D>::gather() {
     const Cell& k = cell_[c];
     const double stored = k.pores * (s_now_[c] - s_old_[c]) + k.elastic * s_now_[c] * (p_now_[c] - p_old_[c]);
     double balance = -stored - s_now_[c] * k.source, projection = 0;
-    double sink = k.pores * capacity_[c] + k.elastic * s_now_[c], links = 0, gravity = 0;
+    double sink = k.pores * capacity_[c] + k.elastic * s_now_[c], links = 0, gravity = 0, motion = 0;
     for (int side = 0; side < 2 * D; ++side) {
       const int face = cells[c].faces[side];
       if (face < 0) continue;
@@ -264,7 +266,9 @@ typename UnsaturatedField<D>::Residual UnsaturatedField<D>::gather() {
       if (face >= n_interior) {
         balance += flow_[face];
         sink += conductance_[face];
-        if (inertia_) projection -= lambda_[face] * plus_change_[c];
+        if (!inertia_) continue;
+        projection -= lambda_[face] * plus_change_[c];
+        motion += lambda_[face];
         continue;
       }
       const InteriorFace<D>& f = interior[face];
@@ -272,16 +276,18 @@ typename UnsaturatedField<D>::Residual UnsaturatedField<D>::gather() {
       balance += side % 2 ? flow_[face] : -flow_[face];
       links += conductance_[face];
       if (!inertia_) continue;
-      const bool both = wet(c) && wet(other);
-      projection += lambda_[face] * (both ? 1 + chi_ : 1) * (plus_change_[other] - plus_change_[c]);
-      if (both) projection += side % 2 ? correction_[face] : -correction_[face];
-      if (wet(c) && !both) sink += lambda_[face];
+      const double factor = chi_factor(c, other);
+      projection += lambda_[face] * factor * (plus_change_[other] - plus_change_[c]);
+      if (factor > 1) projection += side % 2 ? correction_[face] : -correction_[face];
+      motion += lambda_[face] * factor;
+      if (wet(c) && !wet(other)) sink += lambda_[face] * factor;
     }
     if (!line_flow_.empty()) balance -= line_flow_[c], sink += line_conductance_[c];
     projection_[c] = s_now_[c] * projection;
     rhs_[c] = balance + projection_[c];
     sink_[c] = sink + links > 0 ? sink + kRegular * links : 1;  // 1: a cell so dry that nothing moves in it
     diagonal_[c] = sink + links;
+    motion_[c] = motion;
     rounding_[c] = kRounding * (diagonal_[c] * std::abs(p_now_[c]) + gravity + k.pores * s_now_[c]);
   });
 

@@ -56,8 +56,8 @@ struct Transfer {
 template <int D>
 void scatter_state(Transfer<D>& transfer, AffineKind affine, Reals& sums);
 
-// Particles to cells by the overlap of their domains: {V of wet soil, V of its solid, conductivity * V, V of
-// all soil} into cells [slots * kCellSum].
+// Particles to cells by the overlap of their domains: {V of wet soil, V of its solid, conductivity * V, mass
+// of the water in all soil} into cells [slots * kCellSum].
 template <int D>
 void scatter_cells(Transfer<D>& transfer, Reals& cells);
 

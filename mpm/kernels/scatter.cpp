@@ -169,8 +169,9 @@ void scatter_cells_of(mpm::Transfer<D>& transfer) {
       for (int p = range.first; p < range.first + range.count; p += kLanes) {
         const Pack solid = load(&set.mass[p]), volume = select(solid > 0, load(&set.volume[p]), Pack{});
         const Pack wet = load(&set.wet[p]) * volume;
-        Pack fields[4] = {wet, load(&set.wet[p]) * solid * (1 / set.density_solid),
-                          wet * load(&set.conductivity[p]), volume};
+        const Pack grains = solid * (1 / set.density_solid);
+        Pack fields[4] = {wet, load(&set.wet[p]) * grains, wet * load(&set.conductivity[p]),
+                          load(&set.pore_water[p]) * (volume - grains)};
         Reg<4> node[kLanes];
         to_nodes<4>(fields, node);
         Mask start = Mask{};
