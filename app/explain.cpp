@@ -47,6 +47,33 @@ void explain_formulation(const Scene& scene, std::ostream& out) {
                    "projected: stiff water and low conductivity do not limit the step"},
                   {PressureMethod::compressible, "from the bulk modulus: the water wave limits the step"}})
       << '\n';
+  if (!scene.unsaturated()) return;
+  out << "  saturation  from the retention curves of";
+  for (const Material& m : scene.materials)
+    if (m.retains()) out << " \"" << m.name << '"';
+  out << '\n';
+}
+
+std::string stage_text(const coupling::Stage& s, double steps) {
+  using Mode = coupling::Stage::Mode;
+  const bool event = s.until != coupling::Stage::Until::duration;
+  const std::string time = (event || s.mode == Mode::equilibrium ? "at most " : "") +
+                           format_number(s.duration) + " s",
+                    end = s.until == coupling::Stage::Until::failure  ? ", until failure"
+                          : s.until == coupling::Stage::Until::steady ? ", until the flow is steady"
+                                                                      : "";
+  switch (s.mode) {
+    case Mode::equilibrium:
+      return "equilibrium, " + std::string(s.damping > 0 ? "damped motion, " : "relaxation, ") + time +
+             ", at most " + digits(steps, 3) + " steps";
+    case Mode::seepage:
+      return "seepage through a rigid skeleton, " + time + end;
+    case Mode::quasi_static:
+      return "quasi-static, the skeleton follows the water in equilibrium, " + time + end;
+    case Mode::dynamic:
+      break;
+  }
+  return "dynamic, " + time + ", about " + digits(steps, 3) + " steps";
 }
 
 // Seconds of wall clock for one step, from a short trial of the first stage.
@@ -97,21 +124,22 @@ int explain_command(const Arguments& a, std::ostream& out, std::ostream&) {
   out << "stages\n";
   double steps = 0;
   for (const coupling::Stage& s : scene.stages) {
-    const double n = std::ceil(s.duration / step);
-    const bool rest = s.mode == coupling::Stage::Mode::equilibrium;
+    const double n = s.moves() ? std::ceil(s.duration / step) : 0;
     steps += n;
-    out << "  " << s.name << ": " << (rest ? "equilibrium, at most " : "dynamic, ")
-        << format_number(s.duration) << " s, " << (rest ? "at most " : "about ") << digits(n, 3)
-        << " steps\n";
+    out << "  " << s.name << ": " << stage_text(s, n) << '\n';
   }
   out << "off\n";
   for (const std::string& s : simulation.skipped()) out << "  " << s << '\n';
   for (const std::string& n : notes(scene)) out << "  " << n << '\n';
+  if (steps == 0) {
+    out << "run time      not known before: the water's steps follow its iterations\n";
+    return static_cast<int>(ExitCode::done);
+  }
   // Last, because it changes the state.
   const double seconds = trial(simulation);
   out << "run time      about " << duration_text(seconds * steps) << " for " << digits(steps, 3)
-      << " steps with " << threads() << (threads() == 1 ? " thread" : " threads") << ", from a trial of "
-      << digits(seconds * 1e3, 2) << " ms a step, without output\n";
+      << " steps of motion with " << threads() << (threads() == 1 ? " thread" : " threads")
+      << ", from a trial of " << digits(seconds * 1e3, 2) << " ms a step, without output\n";
   return static_cast<int>(ExitCode::done);
 }
 
