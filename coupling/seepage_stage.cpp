@@ -23,7 +23,7 @@
 namespace polder::coupling {
 namespace {
 
-constexpr int kEasy = 4, kHard = 10;            // iterations
+constexpr int kEasy = 5, kHard = 20;            // iterations
 constexpr double kGrowth = 1.5, kShrink = 0.7;  // of the step after an easy and a hard one
 constexpr double kBack = 1.0 / 3;               // after one that did not converge
 constexpr double kSmallestShare = 1e-10;        // of the stage's duration
@@ -86,7 +86,7 @@ double Simulation::Run<D>::flow(double left) {
     const fdm::StepReport report = flow_unsaturated(*world, in);
     if (report.converged) {
       if (report.iterations <= kEasy && whole) water_step = std::min(largest, kGrowth * water_step);
-      if (report.iterations >= kHard) water_step = kShrink * step_size;
+      if (report.iterations >= kHard && !report.lagged) water_step = kShrink * step_size;
       return step_size;
     }
     water_step = kBack * step_size;

@@ -269,9 +269,14 @@ StepReport UnsaturatedField<D>::solve(const UnsaturatedStep& step) {
   const std::span<const double> links =
       std::span<const double>(conductance_).first(cells_.interior_faces().size());
   constexpr int kPatience = 8;
+  // Near saturation the k_r of fine soils falls without bound in its slope (van Genuchten's with n < 2), and
+  // the iteration goes round in circles. From here on it keeps the k_r that it has: water is balanced all the
+  // same.
+  constexpr int kLagAfter = 16;
   double last = std::numeric_limits<double>::infinity(), best = last;
   int waited = 0;
   relaxation_ = 1;
+  lags_ = false;
   for (int i = 0;; ++i) {
     assemble();
     Residual residual;
@@ -287,6 +292,13 @@ StepReport UnsaturatedField<D>::solve(const UnsaturatedStep& step) {
       return report;
     }
     if (residual.small(tolerance_)) break;
+    if (i == kLagAfter && may_lag_ && !inertia_) {
+      lags_ = report.lagged = true;
+      lagged_kr_ = kr_;
+      acceleration_.restart();
+      relaxation_ = 1;
+      last = best = std::numeric_limits<double>::infinity(), waited = 0;
+    }
     if (i == max_iterations_) {
       report.failure = "no convergence in " + std::to_string(i) + " iterations";
       return report;
@@ -364,11 +376,19 @@ void UnsaturatedField<D>::accept() {
 // and slowly where a longer one has failed. Steady when storage is no longer part of the balance.
 template <int D>
 StepReport UnsaturatedField<D>::steady(const UnsaturatedStep& given) {
-  constexpr int kSteps = 300;
-  constexpr double kLongest = 1e16;  // [s]
   if (!given.velocity.empty())
     throw std::logic_error("UnsaturatedField: steady flow needs a resting skeleton");
-  UnsaturatedStep step = given;
+  may_lag_ = false;  // what is steady must not depend on the way there
+  const StepReport total = steady_steps(given);
+  may_lag_ = true;
+  return total;
+}
+
+template <int D>
+StepReport UnsaturatedField<D>::steady_steps(UnsaturatedStep step) {
+  constexpr int kSteps = 300;
+  constexpr double kLongest = 1e16;  // [s]
+  const UnsaturatedStep given = step;
   StepReport total;
   double failed = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kSteps; ++i) {

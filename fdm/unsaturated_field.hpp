@@ -76,6 +76,7 @@ struct UnsaturatedStep {
 
 struct StepReport {
   bool converged = false;
+  bool lagged = false;        // relative conductivities are those of an earlier iteration
   int iterations = 0;         // linear systems solved
   int linear_iterations = 0;  // of all of them together
   double residual = 0;        // sum of the cells' residuals over the sum of the terms' magnitudes
@@ -150,6 +151,7 @@ class UnsaturatedField {
   const char* solver_name() const;
 
  private:
+  StepReport steady_steps(UnsaturatedStep step);
   struct Cell {      // what a step holds for an active cell
     double pores;    // n vf V / dt [m3/s]
     double elastic;  // vf V (n / K_w + c_s) / dt [m3/(Pa s)]
@@ -203,6 +205,8 @@ class UnsaturatedField {
   FaceWeighting weighting_ = FaceWeighting::mean;
   double tolerance_ = 1e-7;
   int max_iterations_ = 40;
+  bool may_lag_ = true, lags_ = false;  // k_r; see solve()
+  Reals lagged_kr_;
   std::uint64_t grid_revision_ = 0, cells_revision_ = 0;
 
   Reals p_, saturation_, positive_, increment_;  // slots

@@ -226,6 +226,7 @@ void UnsaturatedField<D>::assemble() {
   const bool upstream = weighting_ == FaceWeighting::upstream;
   for (std::size_t s = 0; s < curves_.size(); ++s)
     curves_[s].evaluate(cells_of_soil_[s], p_now_, s_now_, capacity_, kr_);
+  if (lags_) std::copy(lagged_kr_.begin(), lagged_kr_.end(), kr_.begin());
   if (!lines_.empty()) assemble_lines();
   if (inertia_) for_each(cells_.count(), [&](int c) { plus_change_[c] = positive(c) - positive_old_[c]; });
 
