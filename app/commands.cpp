@@ -6,6 +6,7 @@
 #include "app/check_scene.hpp"
 #include "app/digits.hpp"
 #include "app/run.hpp"
+#include "app/seepage.hpp"
 #include "app/size_estimate.hpp"
 #include "app/stability.hpp"
 #include "core/error.hpp"
@@ -124,6 +125,7 @@ const std::vector<Command>& commands() {
         {"--quick", "", "", "Without CASE: only the quick ones, which take seconds.", false},
         {"--junit", "", "FILE", "Write the verdicts as JUnit XML, for CI services.", false}},
        verify_command},
+      seepage_command(),
       stability_command(),
       {"schema",
        "",

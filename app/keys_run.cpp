@@ -81,7 +81,7 @@ const Table<Stage>& stage_keys() {
           "count.")
         .only_with("mode", with_slow, slow);
     t.add("largest_step", number(dimension::kTime, kNotNegative), &Stage::largest_step,
-          "Largest step of the water; 0: a hundredth of the duration.")
+          "Largest step of the water; 0: a hundredth of the duration, with until = \"steady\" no limit.")
         .only_with("mode", with_slow, slow);
     t.add("steady_rate", number(dimension::kVelocity, kPositive), &Stage::steady_rate,
           "Change of the head with time, anywhere, below which the flow is steady.")

@@ -204,6 +204,7 @@ void Run::announce() {
                                               : ""));
   log_.line("step limit   " + digits(limit.dt, 4) + " s (" + limit.reason + ")");
   for (const std::string& s : simulation_.skipped()) log_.line("skipped      " + s);
+  for (const std::string& remark : options_.remarks) log_.line(remark);
   for (const std::string& note : notes(scene)) log_.warning(note);
   const double step = scene.numerics.time_step.value_or(simulation_.automatic_step());
   if (step > limit.dt)
@@ -273,6 +274,7 @@ void Run::finish(RunOutcome& outcome) {
   for (const ExpectationResult& e : summary_.expectations)
     log_.line("expectation  " + describe(e) + (e.pass ? ": passed" : ": MISSED"));
   outcome.expectations = summary_.expectations;
+  if (options_.at_end && simulation_.finished()) options_.at_end(simulation_, folder_, log_);
   const coupling::Timing t = simulation_.timing();
   const double speed = t.total > 0 ? static_cast<double>(simulation_.steps() - summary_.first_step) *
                                          static_cast<double>(simulation_.particles()) / t.total
@@ -323,7 +325,10 @@ std::filesystem::path default_folder(const std::string& case_file) {
 }
 
 RunOutcome run_case(const RunOptions& options) {
-  Scene scene = read_case(options.case_file, options.settings);
+  return run_scene(options, read_case(options.case_file, options.settings));
+}
+
+RunOutcome run_scene(const RunOptions& options, Scene scene) {
   check_memory(scene);
   set_threads(choose_threads(options.threads, scene));
   return Run(options, std::move(scene)).go();

@@ -2,12 +2,16 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/expectations.hpp"
 #include "core/error.hpp"
+#include "coupling/simulation.hpp"
+#include "io/log.hpp"
+#include "io/run_folder.hpp"
 
 namespace polder::app {
 
@@ -16,8 +20,11 @@ struct RunOptions {
   std::vector<std::string> settings;  // "key=value"
   std::filesystem::path folder;       // of the results
   bool overwrite = false, restart = false, quiet = false;
-  int threads = 0;              // 0: see choose_threads()
-  std::optional<double> until;  // simulated time [s] at which to stop
+  int threads = 0;                   // 0: see choose_threads()
+  std::optional<double> until;       // simulated time [s] at which to stop
+  std::vector<std::string> remarks;  // told in the log before the run
+  // Called when all stages are done, after the other results have been written.
+  std::function<void(const coupling::Simulation&, const RunFolder&, Log&)> at_end;
 };
 
 struct RunOutcome {
@@ -29,6 +36,9 @@ struct RunOutcome {
 // Throws InputError and EnvironmentError before anything has been computed; what happens later is in the
 // outcome, the log and summary.json.
 RunOutcome run_case(const RunOptions& options);
+
+// The same for a scene that has been read from the options' case and changed; their settings are not applied.
+RunOutcome run_scene(const RunOptions& options, coupling::Scene scene);
 
 // Where the results of a case go unless the user says otherwise: results/NAME.
 std::filesystem::path default_folder(const std::string& case_file);

@@ -286,26 +286,6 @@ double Simulation::Run<D>::cell_quantity(const Vector3& at, const std::string& q
 }
 
 template <int D>
-std::vector<std::pair<double, double>> Simulation::Run<D>::phreatic_line() const {
-  std::vector<std::pair<double, double>> line;
-  if (!world->pore_water || D != 2) return line;
-  const PoreWater<D>& water = *world->pore_water;
-  const Grid<D>& grid = world->skeleton.grid();
-  for (const auto& face : water.cells.boundary_faces()) {
-    if (face.axis != D - 1 || face.outward < 0 || face.outside < 0) continue;
-    const Point<D> c = water.cells.centre(water.cells.cells()[face.cell].index);
-    line.emplace_back(c[0], c[D - 1] + std::min(face.distance, 1.5 * grid.spacing()));
-  }
-  // Above a hole in the water lies its surface all the same: the highest point of each column of cells
-  // counts.
-  std::sort(line.begin(), line.end());
-  const auto first = std::unique(line.rbegin(), line.rend(),
-                                 [](const auto& a, const auto& b) { return a.first == b.first; });
-  line.erase(line.begin(), first.base());
-  return line;
-}
-
-template <int D>
 PointFrame Simulation::Run<D>::points(const std::vector<std::string>& fields) const {
   PointFrame f;
   for (const std::string& name : fields) {
@@ -342,34 +322,6 @@ PointFrame Simulation::Run<D>::points(const std::vector<std::string>& fields) co
   return f;
 }
 
-template <int D>
-CellFrame Simulation::Run<D>::water_cells() const {
-  CellFrame f;
-  f.corners_per_cell = ipow(2, D);
-  f.fields = {{"pore_pressure", 1, {}}, {"head", 1, {}}, {"fill", 1, {}}};
-  if (!world->pore_water) return f;
-  const PoreWater<D>& water = *world->pore_water;
-  const Grid<D>& grid = world->skeleton.grid();
-  std::vector<int> vertex(grid.slots(), -1);
-  static const int order[] = {0, 1, 3, 2, 4, 5, 7, 6};  // VTK turns around each layer
-  for (const auto& cell : water.cells.cells()) {
-    for (int k = 0; k < f.corners_per_cell; ++k) {
-      const int slot = cell.nodes[order[k]];
-      if (vertex[slot] < 0) {
-        vertex[slot] = static_cast<int>(f.vertices.size() / 3);
-        const Point<D> x = grid.position(grid.index(slot));
-        for (int d = 0; d < 3; ++d) f.vertices.push_back(d < D ? x[d < D ? d : 0] : 0.0);
-      }
-      f.corners.push_back(vertex[slot]);
-    }
-    const double p = water.pore_pressure()[cell.slot];
-    f.fields[0].values.push_back(p);
-    f.fields[1].values.push_back(p / world->unit_weight() + water.cells.centre(cell.index)[D - 1]);
-    f.fields[2].values.push_back(water.fill[cell.slot]);
-  }
-  return f;
-}
-
 #define POLDER_INSTANTIATE(D)                                                                      \
   template long Simulation::Run<D>::particles() const;                                             \
   template std::vector<Column> Simulation::Run<D>::history() const;                                \
@@ -378,9 +330,7 @@ CellFrame Simulation::Run<D>::water_cells() const {
   template double Simulation::Run<D>::cell_quantity(const Vector3&, const std::string&) const;     \
   template double Simulation::Run<D>::body_quantity(const std::string&, const std::string&) const; \
   template Profile Simulation::Run<D>::profile(const Measure&) const;                              \
-  template std::vector<std::pair<double, double>> Simulation::Run<D>::phreatic_line() const;       \
-  template PointFrame Simulation::Run<D>::points(const std::vector<std::string>&) const;           \
-  template CellFrame Simulation::Run<D>::water_cells() const;
+  template PointFrame Simulation::Run<D>::points(const std::vector<std::string>&) const;
 POLDER_INSTANTIATE(2)
 POLDER_INSTANTIATE(3)
 

@@ -261,7 +261,7 @@ struct Stage {
   double output_every = 0, history_every = 0;  // frames and lines of the history [s]; 0: as OutputSpec
   // seepage, quasi_static: steps of the water [s]
   double first_step = 0;      // 0: a hundred-thousandth of the duration
-  double largest_step = 0;    // 0: a hundredth of the duration
+  double largest_step = 0;    // 0: a hundredth of the duration, on the way to a steady state no limit
   double steady_rate = 1e-9;  // seepage: change of the head with time that counts as none [m/s]
   // quasi_static: equilibrium is sought whenever the pressure has changed by this much anywhere since the
   // last time [Pa]; 0: two hundredths of the hydrostatic pressure over the height of the soil

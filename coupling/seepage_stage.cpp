@@ -25,8 +25,11 @@ namespace {
 
 constexpr int kEasy = 5, kHard = 20;            // iterations
 constexpr double kGrowth = 1.5, kShrink = 0.7;  // of the step after an easy and a hard one
-constexpr double kBack = 1.0 / 3;               // after one that did not converge
-constexpr double kSmallestShare = 1e-10;        // of the stage's duration
+// On the way to a steady state the path does not matter, only that the iteration gets along.
+constexpr int kEasySteady = 10;
+constexpr double kSteadyGrowth = 4;
+constexpr double kBack = 1.0 / 3;         // after one that did not converge
+constexpr double kSmallestShare = 1e-10;  // of the stage's duration
 constexpr double kFirstShare = 1e-5, kLargestShare = 1e-2;
 constexpr double kRelaxShare = 0.02;  // of the hydrostatic pressure over the height of the soil
 
@@ -68,7 +71,15 @@ double Simulation::Run<D>::flow(double left) {
   const Stage& spec = present();
   PoreWater<D>& w = *world->pore_water;
   Stopwatch watch(w.wall_seconds);
-  const double largest = spec.largest_step > 0 ? spec.largest_step : kLargestShare * spec.duration;
+  const bool steady = spec.until == Stage::Until::steady;
+  const double largest = spec.largest_step > 0 ? spec.largest_step
+                         : steady              ? spec.duration
+                                               : kLargestShare * spec.duration;
+  const double growth = steady ? kSteadyGrowth : kGrowth;
+  const int easy = steady ? kEasySteady : kEasy;
+  double smallest_step = kSmallestShare * spec.duration;
+  if (spec.first_step > 0)
+    smallest_step = std::min(smallest_step, kSmallestShare / kFirstShare * spec.first_step);
   if (water_step == 0)
     water_step = std::min(largest, spec.first_step > 0 ? spec.first_step : kFirstShare * spec.duration);
   for (;;) {
@@ -78,19 +89,19 @@ double Simulation::Run<D>::flow(double left) {
     update_water_cells(*world, time + step_size);
     if (!w.unsaturated) {
       flow_saturated(*world, step_size);
-      water_step = std::min(largest, kGrowth * water_step);
+      water_step = std::min(largest, growth * water_step);
       return step_size;
     }
     FlowInput in;
     in.dt = step_size;
     const fdm::StepReport report = flow_unsaturated(*world, in);
     if (report.converged) {
-      if (report.iterations <= kEasy && whole) water_step = std::min(largest, kGrowth * water_step);
+      if (report.iterations <= easy && whole) water_step = std::min(largest, growth * water_step);
       if (report.iterations >= kHard && !report.lagged) water_step = kShrink * step_size;
       return step_size;
     }
     water_step = kBack * step_size;
-    if (water_step < kSmallestShare * spec.duration)
+    if (water_step < smallest_step)
       throw NumericalError("stage '" + spec.name + "': the flow of water did not converge with a step of " +
                            fdm::number(step_size) + " s at " + fdm::number(time) + " s: residual " +
                            fdm::number(report.residual) + " after " + std::to_string(report.iterations) +

@@ -423,6 +423,9 @@ std::vector<std::pair<double, double>> Simulation::phreatic_line() const {
 PointFrame Simulation::points(const std::vector<std::string>& fields) const {
   return run_->points(fields);
 }
+FlowNet Simulation::flow_net() const {
+  return run_->flow_net();
+}
 CellFrame Simulation::water_cells() const {
   return run_->water_cells();
 }

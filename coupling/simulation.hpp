@@ -56,6 +56,26 @@ struct Profile {
   std::vector<double> coordinate, value;
 };
 
+// Water that leaves the soil through a face of the cells.
+struct FlowExit {
+  Vector3 place{};      // of the face [m]
+  Vector3 direction{};  // its outward normal, along an axis
+  int boundary = -1;    // number of the water boundary, -1: the soil's surface without a name
+  double gradient = 0;  // loss of head over the distance from the cell's centre to the face [-]
+  double critical = 0;  // gradient of upward flow that would lift the soil there [-]
+  bool is_upward() const { return direction[1] > 0; }
+  double heave_factor() const { return critical / gradient; }
+};
+
+// What a plane flow through the cells amounts to at present (fdm/flow_results.hpp).
+struct FlowNet {
+  // Stream function at the nodes, x, y [m] and psi [m2/s] each (axisymmetric: [m3/s] per radian).
+  std::vector<std::array<double, 3>> stream_function;
+  double lowest = 0, highest = 0;  // of it
+  double defect = 0;  // largest disagreement of two ways around a cell over the range: 0 in steady flow
+  std::vector<FlowExit> exits;
+};
+
 // Reads or writes every number that decides what comes next. Implemented by checkpoints.
 class StateVisitor {
  public:
@@ -141,6 +161,8 @@ class Simulation {
   double body_quantity(const std::string& body, const std::string& quantity) const;  // mean over its mass
   Profile profile(const Measure& measure) const;
   std::vector<std::pair<double, double>> phreatic_line() const;  // (x, height) of the water surface, 2D
+
+  FlowNet flow_net() const;  // empty in 3D and without pore water
 
   PointFrame points(const std::vector<std::string>& fields) const;
   CellFrame water_cells() const;

@@ -25,6 +25,7 @@ struct Simulation::Base {
   virtual double body_quantity(const std::string& body, const std::string& quantity) const = 0;
   virtual Profile profile(const Measure& measure) const = 0;
   virtual std::vector<std::pair<double, double>> phreatic_line() const = 0;
+  virtual FlowNet flow_net() const = 0;
   virtual PointFrame points(const std::vector<std::string>& fields) const = 0;
   virtual CellFrame water_cells() const = 0;
   virtual void visit(StateVisitor& visitor) = 0;
@@ -87,6 +88,7 @@ struct Simulation::Run final : Simulation::Base {
   double body_quantity(const std::string& body, const std::string& quantity) const override;
   Profile profile(const Measure& measure) const override;
   std::vector<std::pair<double, double>> phreatic_line() const override;
+  FlowNet flow_net() const override;
   PointFrame points(const std::vector<std::string>& fields) const override;
   CellFrame water_cells() const override;
   void visit(StateVisitor& visitor) override;

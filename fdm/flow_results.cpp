@@ -130,7 +130,7 @@ std::vector<ExitGradient> exit_gradients(const WaterCells<2>& cells, std::span<c
     const double gradient = ((pressure[c.slot] - law.upper) / weight - rise) / f.distance;
     if (!(gradient > 0)) continue;
     place[f.axis] += f.outward * f.distance;
-    found.push_back({place, f.axis, f.outward, f.boundary, gradient});
+    found.push_back({place, c.slot, f.axis, f.outward, f.boundary, gradient});
   }
   return found;
 }

@@ -40,6 +40,7 @@ StreamFunction stream_function(const WaterCells<2>& cells, std::span<const doubl
 // Loss of head from a cell's centre to a boundary face over their distance, where water leaves.
 struct ExitGradient {
   Point<2> place{};   // of the face
+  int slot = -1;      // of the cell
   int axis = 0;       // of its normal
   int outward = 1;    // +1: the water leaves along the axis
   int boundary = -1;  // number of the condition, -1: free surface without a name

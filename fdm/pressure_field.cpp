@@ -367,6 +367,25 @@ const Discharge& PressureField<D>::discharge() {
 }
 
 template <int D>
+Reals PressureField<D>::darcy_flow(std::span<const double> darcy_mobility) const {
+  require_current(std::min(p_.size(), darcy_mobility.size()));
+  const auto cells = cells_.cells();
+  const auto interior = cells_.interior_faces();
+  const auto boundary = cells_.boundary_faces();
+  Reals flow(interior.size() + boundary.size());
+  for (std::size_t i = 0; i < interior.size(); ++i) {
+    const InteriorFace<D>& f = interior[i];
+    const int low = cells[f.low].slot, high = cells[f.high].slot;
+    const double gradient = (p_[high] - p_[low]) / cells_.grid().spacing();
+    flow[i] = f.area * harmonic_mean(darcy_mobility[low], darcy_mobility[high]) *
+              (gradient - water_.density * water_.gravity[f.axis]);
+  }
+  for (std::size_t b = 0; b < boundary.size(); ++b)
+    flow[interior.size() + b] = -darcy_outflow(boundary[b], darcy_mobility[cells[boundary[b].cell].slot]);
+  return flow;
+}
+
+template <int D>
 WaterBalance PressureField<D>::balance(std::span<const double> velocity) const {
   WaterBalance result = balance_;
   result.projection = 0;

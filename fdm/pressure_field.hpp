@@ -119,6 +119,9 @@ class PressureField {
 
   // Darcy discharge at the present pressure with the conductivities of the last solution.
   const Discharge& discharge();
+  // Darcy flow through the faces at the present pressure, in the order and with the signs of
+  // UnsaturatedField::face_flow(): interior ones against the axis, then boundary faces into the soil [m3/s].
+  Reals darcy_flow(std::span<const double> darcy_mobility) const;
   // Balance of the last step as solved: v* plus its correction at the faces. Defect: what the solver left.
   const WaterBalance& balance() const { return balance_; }
   // Balance of the last step with the corrected nodal velocities. Defect: what the approximate projection

@@ -15,9 +15,10 @@ namespace polder {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::array<std::string_view, 11> kFiles = {
-    "case.toml",    "log.txt",       "history.csv",    "probes.csv", "bodies.csv",      "phreatic.csv",
-    "summary.json", "checkpoint.h5", "stability.json", "trials.csv", "slip_surface.csv"};
+constexpr std::array<std::string_view, 14> kFiles = {
+    "case.toml",        "log.txt",      "history.csv",         "probes.csv",        "bodies.csv",
+    "phreatic.csv",     "summary.json", "checkpoint.h5",       "stability.json",    "trials.csv",
+    "slip_surface.csv", "flow.json",    "stream_function.csv", "exit_gradients.csv"};
 constexpr std::array<std::string_view, 4> kSets = {"soil", "water", "fluid", "grains"};
 
 // What comes after `set` in the names of its frames and index: NAME_000120.hdf, NAME.hdf.series, where NAME

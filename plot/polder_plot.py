@@ -30,6 +30,7 @@ import expectation_figures
 import field_figures
 import history_figures
 import probe_figures
+import seepage_figures
 import stability_figures
 from results import PlotError, Results
 
@@ -67,6 +68,7 @@ def draw(options):
         written += probe_figures.draw(results, output)
         written += expectation_figures.draw(results, output)
         written += stability_figures.draw(results, output)
+        written += seepage_figures.draw(results, output)
     return written
 
 
