@@ -77,7 +77,10 @@ def draw_net(results, output, result):
     first, other = axes.flat
     limits = (head[wet].min(), head[wet].max())
     colours = draw_cells(first, shapes, head, NAMED["head"].colours, limits if limits[1] > limits[0] else (0, limits[1] or 1))
-    contours(first, centre[:, 0], centre[:, 1], head, DROPS, HEAD, 0.6)
+    spacing = float(np.ptp(shapes[0, :, 0]))
+    below = head - centre[:, 1] > -spacing  # to the phreatic line; little flows above it
+    below = below if np.any(below) else wet
+    contours(first, centre[below, 0], centre[below, 1], head[below], DROPS, HEAD, 0.6)
     stream = results.table("stream_function.csv", needs_time=False)
     if stream is not None:
         contours(first, stream["x[m]"], stream["y[m]"], stream["stream_function[m2/s]"], TUBES, STREAM, 0.8)
@@ -108,7 +111,8 @@ def draw_net(results, output, result):
     if steepest:
         handles.append(Line2D([], [], color="black", marker="v", markersize=4, linestyle="",
                               label=f"largest exit gradient {steepest['gradient']:.3g}"))
-    figure.legend(handles=handles, loc="upper center", ncol=4, bbox_to_anchor=(0.5, 0.0))
+    figure.get_layout_engine().set(rect=(0, 0.06, 1, 0.94))
+    figure.legend(handles=handles, loc="lower center", ncol=4)
     style.save_table(os.path.join(output, "seepage.csv"),
                      {"x[m]": centre[:, 0], "y[m]": centre[:, 1], "head[m]": head,
                       f"{second}[{field.unit}]": shown})
