@@ -225,6 +225,41 @@ from_stage = "second"
         os.remove(os.path.join(folder, "trials.csv"))
         self.check_error(plot(folder), 4, "stability.json lies there without trials.csv")
 
+    def test_seepage(self):
+        folder = os.path.join(self.root, "seepage")
+        shutil.copytree(self.folder, folder, ignore=shutil.ignore_patterns("plots", "*.csv"))
+        frames = sorted(glob.glob(os.path.join(folder, "fluid_*.hdf")))
+        for path in frames:
+            with h5py.File(path, "r+") as file:
+                group = file["VTKHDF"]
+                corners = group["Connectivity"][()].reshape(-1, 4)
+                centre = group["Points"][()][corners].mean(axis=1)
+                group["CellData/head"] = group["CellData/pore_pressure"][()] / 9810.0 + centre[:, 1] - 0.1 * centre[:, 0]
+        result = {"largest_exit_gradient": {"gradient": 0.5, "place": [1.0, 0.5]}}
+        with open(os.path.join(folder, "flow.json"), "w", encoding="utf-8") as file:
+            json.dump(result, file)
+        with open(os.path.join(folder, "stream_function.csv"), "w", encoding="utf-8") as file:
+            file.write("x[m],y[m],stream_function[m2/s]\n")
+            for x in range(3):
+                for y in range(3):
+                    file.write(f"{x},{y},{1e-5 * y}\n")
+        with open(os.path.join(folder, "history.csv"), "w", encoding="utf-8") as file:
+            file.write("time[s],discharge:drain[m3/s],discharge:wall[m3/s]\n0,0,0\n10,1e-5,0\n1e6,3e-5,0\n")
+        drawn = plot(folder)
+        self.assertEqual(drawn.returncode, 0, drawn.stderr)
+        self.check_picture(os.path.join(folder, "plots", "seepage.png"))
+        self.check_picture(os.path.join(folder, "plots", "discharges.png"))
+        heads = columns(os.path.join(folder, "plots", "seepage.csv"))
+        with h5py.File(frames[-1], "r") as file:
+            stored = file["VTKHDF/CellData/head"][()]
+        np.testing.assert_allclose([float(h) for h in heads["head[m]"]], stored, rtol=1e-6)
+        # What carries nothing at any time is not drawn.
+        self.assertEqual(list(columns(os.path.join(folder, "plots", "discharges.csv"))),
+                         ["time[s]", "discharge:drain[m3/s]"])
+        with open(os.path.join(folder, "flow.json"), "w", encoding="utf-8") as file:
+            file.write("{")
+        self.check_error(plot(folder), 4, "flow.json: is damaged")
+
     def test_errors_are_one_line_with_their_exit_code(self):
         self.check_error(plot(os.path.join(self.root, "nowhere")), 2, "nowhere: there is no such folder")
         empty = os.path.join(self.root, "empty")
