@@ -210,9 +210,13 @@ void check_unsaturated(Reader& reader) {
   if (!unsaturated && scene.water.initial_saturation && !reader.failed("pore_water"))
     reader.error("pore_water.initial_saturation", "needs a retention curve, and no material has one",
                  needed + "; or saturation_above");
+  // Nothing, which a resolved case says with a phreatic line, contradicts nothing.
+  const std::pair<const char*, double> above[] = {{"saturation_above", scene.water.saturation_above},
+                                                  {"suction_above", scene.water.suction_above}};
   if (unsaturated)
-    for (const char* name : {"saturation_above", "suction_above"})
-      if (const std::string key = std::string("pore_water.") + name; reader.given(key) && !reader.failed(key))
+    for (const auto& [name, value] : above)
+      if (const std::string key = std::string("pore_water.") + name;
+          value != 0 && reader.given(key) && !reader.failed(key))
         reader.error(key, "contradicts the retention curves, which give saturation and suction",
                      "initial_saturation; or no retention");
   bool all = true, any = false;
