@@ -21,16 +21,16 @@ struct UnsaturatedWater {
       : field(cells, properties, std::move(soils)) {}
 
   fdm::UnsaturatedField<D> field;
-  std::vector<int> soil;                  // material of most of a cell's soil
-  std::uint64_t soil_revision = 0;        // of the cells that `soil` belongs to
-  Reals volume_fraction;                  // of soil counted to a cell, slivers of its neighbours included [-]
-  Reals compressibility;                  // of the skeleton where it is held rigid, 1 / (lambda + 2 G) [1/Pa]
-  Reals point_saturation;                 // mean of the points in a cell at the last mapping, -1: none
-  Reals travel;                           // of the soil in a cell since then [cells]
-  Reals was_active;                       // 1 where a cell was active then
-  bool mapped = false;                    // there has been a mapping
-  Reals pushing;                          // pressure of full soil, see fdm::UnsaturatedField [Pa]
-  Reals change, suction, suction_stress;  // work space
+  std::vector<int> soil;            // material of most of a cell's soil
+  std::uint64_t soil_revision = 0;  // of the cells that `soil` belongs to
+  Reals volume_fraction;            // of soil counted to a cell, slivers of its neighbours included [-]
+  Reals compressibility;            // of the skeleton where it is held rigid, 1 / (lambda + 2 G) [1/Pa]
+  Reals point_saturation;           // mean of the points in a cell at the last mapping, -1: none
+  Reals travel;                     // of the soil in a cell since then [cells]
+  Reals was_active;                 // 1 where a cell was active then
+  bool mapped = false;              // there has been a mapping
+  Reals pushing;                    // pressure of full soil, see fdm::UnsaturatedField [Pa]
+  Reals change, room_share, even_share, suction, suction_stress;  // work space
 };
 
 template <int D>

@@ -212,20 +212,41 @@ void fill_points(World<D>& world) {
   }
 }
 
+// Gives the change of the cells to the points: each takes the part of its own room (what it lacks to be full,
+// or what it can lose) that the cell's change is of the mean room of its points. So none overflows while
+// others in the cell have room, and the water in all points changes by what the cells took up. What goes
+// beyond the room of all points is shared evenly.
 template <int D>
 void change_points(World<D>& world) {
-  UnsaturatedWater<D>& u = *world.pore_water->unsaturated;
+  PoreWater<D>& w = *world.pore_water;
+  UnsaturatedWater<D>& u = *w.unsaturated;
   spread_to_slivers(world, u.change);
+  u.room_share.assign(u.change.size(), 0.0), u.even_share.assign(u.change.size(), 0.0);
+  parallel_for(static_cast<int>(u.change.size()), [&](int i) {
+    const double change = u.change[i], mean = u.point_saturation[i];
+    if (change == 0 || mean < 0) return;
+    const fdm::Retention& r = u.field.curve(u.soil[i]).parameters();
+    const double room = change > 0 ? r.maximum - mean : mean - r.residual;
+    const double share = room > 0 ? std::min(1.0, std::abs(change) / room) : 0.0;
+    u.room_share[i] = change > 0 ? share : -share;
+    u.even_share[i] = change - u.room_share[i] * std::max(room, 0.0);
+  });
   const double density = world.scene.water.density;
   for (auto& body : world.skeleton.bodies()) {
     ParticleSet<D>& set = *body;
     if (set.pore_water.empty()) continue;
+    const fdm::Retention& r = u.field.curve(set.material).parameters();
     parallel_for(set.slots(), [&](int p) {
       if (set.id[p] < 0) return;
       const Overlap<D> o = overlap_of(world.skeleton.grid(), set, p);
+      const double own = set.pore_water[p] / density;
       double sum = 0;
-      for (int k = 0; k < ipow(2, D); ++k)
-        if (o.slot[k] >= 0) sum += o.share[k] * u.change[o.slot[k]];
+      for (int k = 0; k < ipow(2, D); ++k) {
+        if (o.slot[k] < 0) continue;
+        const double part = u.room_share[o.slot[k]];
+        sum +=
+            o.share[k] * (part * (part > 0 ? r.maximum - own : own - r.residual) + u.even_share[o.slot[k]]);
+      }
       set.pore_water[p] += density * sum;
     });
   }
@@ -348,7 +369,6 @@ fdm::StepReport flow_unsaturated(World<D>& world, const FlowInput& in) {
     const fdm::ActiveCell<D>& cell = w.cells.cells()[c];
     const int i = cell.slot;
     u.change[i] = u.field.saturation()[i] - u.change[i];
-    u.point_saturation[i] += u.change[i];
     double speed = 0;
     for (std::size_t k = 0; !in.velocity.empty() && k < cell.nodes.size(); ++k) {
       double square = 0;
@@ -361,6 +381,10 @@ fdm::StepReport flow_unsaturated(World<D>& world, const FlowInput& in) {
     u.travel[i] = std::min(1.0, speed * per_cell);
   });
   change_points(world);
+  parallel_for(w.cells.count(), [&](int c) {
+    const int i = w.cells.cells()[c].slot;
+    u.point_saturation[i] += u.change[i];
+  });
   find_pushing_pressure(world);
   w.outflow += in.dt * w.discharge().total();
   // What the cells took up beyond the filling of pores, which the points have got.
