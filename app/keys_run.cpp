@@ -110,6 +110,17 @@ const Table<Stage>& stage_keys() {
                      "mode = \"quasi-static\"");
       if (s.until == Stage::Until::steady && s.mode != Stage::Mode::seepage && !reader.failed(path))
         reader.error(key_path(path, "until"), "\"steady\" ends seepage stages only", "mode = \"seepage\"");
+      const auto refuse = [&](const char* name, bool ignored, const char* why, const char* allowed) {
+        if (ignored && !reader.failed(key_path(path, name)) && !reader.failed(key_path(path, "mode")))
+          reader.error(key_path(path, name), why, allowed);
+      };
+      refuse("damping", s.damping > 0 && !s.moves(), "nothing moves with inertia while water seeps",
+             "mode = \"equilibrium\" or \"dynamic\"");
+      refuse("water_flows", !s.water_flows && !s.moves(), "the stage is about the flow of water",
+             "true; or mode = \"equilibrium\"");
+      const bool rigid = s.mode == Stage::Mode::seepage;
+      refuse("plastic", !s.plastic && rigid, "the skeleton is rigid", "mode = \"quasi-static\"");
+      refuse("sticking", s.sticking && rigid, "the skeleton is rigid", "mode = \"quasi-static\"");
       if (s.gravity_ramp > 0 && !s.moves() && !reader.failed(path))
         reader.error(key_path(path, "gravity_ramp"), "gravity does not change while water seeps",
                      "mode = \"equilibrium\" or \"dynamic\"");
