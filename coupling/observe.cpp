@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/error.hpp"
+#include "coupling/between_centres.hpp"
 #include "coupling/quantities.hpp"
 #include "coupling/simulation_run.hpp"
 #include "mpm/point_stencil.hpp"
@@ -251,28 +252,9 @@ double Simulation::Run<D>::cell_quantity(const Vector3& at, const std::string& q
   const PoreWater<D>& water = *world->pore_water;
   const Grid<D>& grid = world->skeleton.grid();
   if (quantity == "pore_pressure_interpolated") {
-    // Multilinear between cell centres; centres without water stand for zero pressure at the surface.
-    Index<D> base;
-    double share[D];
-    for (int d = 0; d < D; ++d) {
-      const double x = (at[d] - grid.origin()[d]) / grid.spacing() - 0.5;
-      base[d] = static_cast<int>(std::floor(x));
-      share[d] = x - base[d];
-    }
-    double sum = 0, weight = 0;
-    for (int k = 0; k < ipow(2, D); ++k) {
-      Index<D> cell = base;
-      double w = 1;
-      for (int d = 0; d < D; ++d) {
-        const int one = k >> d & 1;
-        cell[d] = std::clamp(base[d] + one, 0, grid.cells()[d] - 1);
-        w *= one ? share[d] : 1 - share[d];
-      }
-      const int slot = grid.slot(cell);
-      if (slot < 0 || !water.cells.active(slot)) continue;
-      sum += w * water.pore_pressure()[slot], weight += w;
-    }
-    return weight > 0 ? sum / weight : 0.0;
+    Point<D> x;
+    for (int d = 0; d < D; ++d) x[d] = at[d];
+    return BetweenCentres<D>(water.cells, x).value(water.pore_pressure());
   }
   Index<D> cell;
   for (int d = 0; d < D; ++d)

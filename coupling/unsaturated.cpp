@@ -5,14 +5,15 @@
 
 #include "core/error.hpp"
 #include "core/threads.hpp"
+#include "coupling/between_centres.hpp"
 #include "coupling/initial_state.hpp"
 
 namespace polder::coupling {
 namespace {
 
-// Water left over by the iteration, as a share of what moves in a step. Steps of motion move little, and
-// there are many of them.
-constexpr double kSeepageTolerance = 1e-7, kMotionTolerance = 1e-5;
+// Water left over by the iteration, as a share of what moves in a step: the case's tolerance where the
+// skeleton rests. Steps of motion move little, and there are many of them.
+constexpr double kMotionFactor = 100;
 constexpr double kNoPoints = -1;
 constexpr double kFull = 1 - 1e-9;           // saturation beyond which suction is not looked for
 constexpr double kFirstSteadyStep = 1000.0;  // [s]
@@ -54,49 +55,11 @@ Overlap<D> overlap_of(const Grid<D>& grid, const ParticleSet<D>& set, int p) {
   return o;
 }
 
-// Value at a point between the centres of active cells; those without water do not count.
 template <int D>
-struct Between {
-  int slot[ipow(2, D)];
-  double weight[ipow(2, D)];
-};
-
-template <int D>
-Between<D> between_centres(const fdm::WaterCells<D>& cells, const ParticleSet<D>& set, int p) {
-  const Grid<D>& grid = cells.grid();
-  Index<D> base;
-  double share[D];
-  for (int d = 0; d < D; ++d) {
-    const double x = (set.position[d][p] - grid.origin()[d]) / grid.spacing() - 0.5;
-    base[d] = static_cast<int>(std::floor(x));
-    share[d] = x - base[d];
-  }
-  Between<D> b;
-  double sum = 0;
-  for (int k = 0; k < ipow(2, D); ++k) {
-    Index<D> cell = base;
-    double w = 1;
-    for (int d = 0; d < D; ++d) {
-      const int one = k >> d & 1;
-      cell[d] = std::clamp(base[d] + one, 0, grid.cells()[d] - 1);
-      w *= one ? share[d] : 1 - share[d];
-    }
-    const int slot = grid.slot(cell);
-    b.slot[k] = slot >= 0 && cells.active(slot) ? slot : -1;
-    b.weight[k] = b.slot[k] < 0 ? 0.0 : w;
-    sum += b.weight[k];
-  }
-  if (sum > 0)
-    for (double& w : b.weight) w /= sum;
-  return b;
-}
-
-template <int D>
-double value(const Between<D>& b, const Reals& field) {
-  double sum = 0;
-  for (int k = 0; k < ipow(2, D); ++k)
-    if (b.slot[k] >= 0) sum += b.weight[k] * field[b.slot[k]];
-  return sum;
+Point<D> position_of(const ParticleSet<D>& set, int p) {
+  Point<D> x;
+  for (int d = 0; d < D; ++d) x[d] = set.position[d][p];
+  return x;
 }
 
 // The material of most of the soil in each cell, by the overlap of the points' domains.
@@ -252,10 +215,6 @@ void change_points(World<D>& world) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 template <int D>
 void find_pushing_pressure(World<D>& world) {
   UnsaturatedWater<D>& u = *world.pore_water->unsaturated;
@@ -361,7 +320,7 @@ fdm::StepReport flow_unsaturated(World<D>& world, const FlowInput& in) {
   step.velocity = in.velocity, step.mobility = in.mobility, step.pressure_gradient = in.pressure_gradient;
   if (in.velocity.empty()) step.skeleton_compressibility = compressibility(world);
   u.change = u.field.saturation();
-  u.field.set_tolerance(in.velocity.empty() ? kSeepageTolerance : kMotionTolerance);
+  u.field.set_tolerance(world.scene.numerics.solver_tolerance * (in.velocity.empty() ? 1 : kMotionFactor));
   const fdm::StepReport report = u.field.solve(step);
   if (!report.converged) return report;
   const double per_cell = in.dt / world.skeleton.grid().spacing() / ipow(2, D);
@@ -414,14 +373,15 @@ void update_suction(World<D>& world) {
   for (auto& body : world.skeleton.bodies()) {
     ParticleSet<D>& set = *body;
     const Material& m = world.scene.materials[set.material];
-    if (set.suction_stress.empty()) continue;
+    // Soil that is always saturated has no suction of its own, whatever the cells of its neighbours say.
+    if (set.suction_stress.empty() || !m.retains()) continue;
     const int capillary = world.layouts[set.material].capillary_factor;
     parallel_for(set.slots(), [&](int p) {
       if (set.id[p] < 0) return;
-      const Between<D> between = between_centres(w.cells, set, p);
-      set.suction_stress[p] = value(between, u.suction_stress);
+      const BetweenCentres<D> between(w.cells, position_of(set, p));
+      set.suction_stress[p] = between.value(u.suction_stress);
       if (capillary < 0) return;
-      const double s = value(between, u.suction);
+      const double s = between.value(u.suction);
       set.state[capillary][p] = m.capillary_suction > 0 ? std::min(1.0, s / m.capillary_suction)
                                 : s > 0                 ? 1.0
                                                         : 0.0;
@@ -432,7 +392,7 @@ void update_suction(World<D>& world) {
 template <int D>
 double pushing_pressure_at(const World<D>& world, const ParticleSet<D>& set, int p) {
   const PoreWater<D>& w = *world.pore_water;
-  return value(between_centres(w.cells, set, p), w.unsaturated->pushing);
+  return BetweenCentres<D>(w.cells, position_of(set, p)).value(w.unsaturated->pushing);
 }
 
 #define POLDER_INSTANTIATE(D)                                                \

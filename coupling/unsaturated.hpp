@@ -6,8 +6,8 @@
 //   and
 //                     draws near to that mean by as much as the soil has travelled in cells: soil that moves
 //                     on brings its water, soil at rest keeps its water table where it is
-//   cells -> points   S_p += sum_c o_pc (S_c^{n+1} - S_c^n), o_pc the overlap of the point's domain with the
-//                     cell; the water in all points changes by exactly what the cells took up
+//   cells -> points   each point takes the part of its own room that the cell's change is of the mean room of
+//                     the points that overlap it; the water in all points changes by what the cells took up
 // Suction acts on the soil as the isotropic stress chi s (Bishop 1959), interpolated between cell centres;
 // positive pore pressure acts through its gradient at the nodes. Capillary cohesion grows linearly with the
 // suction up to the material's capillary_suction and vanishes where the pores are full.
