@@ -33,7 +33,7 @@ fdm::WaterBoundary<D> condition_of(const WaterBoundary& b, double time, bool uns
       w.kind = To::impermeable;
       break;
     case WaterBoundary::Kind::surface:
-      w.kind = unsaturated ? To::atmosphere : To::surface;
+      w.kind = To::surface;
       break;
     case WaterBoundary::Kind::flux:
       w.kind = To::flux;
@@ -51,7 +51,6 @@ fdm::WaterBoundary<D> condition_of(const WaterBoundary& b, double time, bool uns
       w.value = 0;
       break;
   }
-  if (w.kind == To::atmosphere && b.kind == WaterBoundary::Kind::surface) w.value = 0;
   for (int d = 0; d < D; ++d) {
     if (b.from) w.from[d] = std::min((*b.from)[d], b.to ? (*b.to)[d] : (*b.from)[d]);
     if (b.to) w.to[d] = std::max((*b.to)[d], b.from ? (*b.from)[d] : (*b.to)[d]);

@@ -2,8 +2,8 @@
 // skeleton follows in equilibrium.
 //
 // Steps of the water are implicit; their size follows the number of iterations (Paniconi & Putti 1994, Water
-// Resour. Res. 30): few let it grow, many shrink it, none that converges halves it and goes back. A
-// quasi-static stage seeks equilibrium (relaxation.hpp) whenever the pore pressure has changed enough
+// Resour. Res. 30): few let it grow, many shrink it, one that does not converge is undone and cut to a third.
+// A quasi-static stage seeks equilibrium (relaxation.hpp) whenever the pore pressure has changed enough
 // anywhere. Where soil yields on and on a search ends without equilibrium, and the next one goes on from
 // there: a toe may slump and come to rest. The soil has failed when a part of it, and not a point only, has
 // moved too far; the search in which that happens is undone, so that what comes next starts from the state
@@ -70,7 +70,6 @@ template <int D>
 double Simulation::Run<D>::flow(double left) {
   const Stage& spec = present();
   PoreWater<D>& w = *world->pore_water;
-  Stopwatch watch(w.wall_seconds);
   const bool steady = spec.until == Stage::Until::steady;
   const double largest = spec.largest_step > 0 ? spec.largest_step
                          : steady              ? spec.duration
@@ -86,7 +85,8 @@ double Simulation::Run<D>::flow(double left) {
     const bool whole = water_step < left;
     const double step_size = std::min(water_step, left);
     reason = whole ? "iterations of the water" : "end of stage or time of an expectation";
-    update_water_cells(*world, time + step_size);
+    update_water_cells(*world, time + step_size);  // keeps its own time
+    Stopwatch watch(w.wall_seconds);
     if (!w.unsaturated) {
       flow_saturated(*world, step_size);
       water_step = std::min(largest, growth * water_step);
@@ -183,6 +183,7 @@ bool Simulation::Run<D>::follow() {
   const Stage& spec = present();
   PoreWater<D>& w = *world->pore_water;
   Stopwatch watch(timing.mechanics);
+  const double water_seconds = w.wall_seconds;
   if (relax_change == 0) {
     const Totals t = audit->totals(*world);
     relax_change = spec.relax_change > 0
@@ -197,6 +198,7 @@ bool Simulation::Run<D>::follow() {
   options.most_steps = spec.relaxation_steps;
   options.stop_runaway = false;
   const RelaxationReport report = relax(*world, options, time);
+  timing.mechanics -= w.wall_seconds - water_seconds;
   relaxation_steps += report.steps;
   ++relaxations;
   unbalanced_relaxations += !report.converged;
