@@ -22,6 +22,14 @@ class PlotError(Exception):
         self.exit_code = exit_code
 
 
+def read_json(path):
+    try:
+        with open(path, encoding="utf-8") as file:
+            return json.load(file)
+    except ValueError as error:
+        raise PlotError(f"{path}: is damaged ({error})", 4) from None
+
+
 class Frame:
     """One VTKHDF file. Arrays are read when asked for."""
 

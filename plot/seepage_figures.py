@@ -4,7 +4,6 @@ flow.json, stream_function.csv, the frames of the set fluid, phreatic.csv and hi
 flow.json. Equipotentials: contours of the head through the centres of the cells; streamlines: contours of the stream
 function through the nodes, each tube carrying the same discharge.
 """
-import json
 import os
 
 import matplotlib.patheffects as patheffects
@@ -15,18 +14,10 @@ from matplotlib.lines import Line2D
 
 import figure_style as style
 from field_figures import NAMED
-from results import PlotError
+from results import read_json
 
 DROPS, TUBES = 12, 8  # of head and of discharge between the lines drawn
 HEAD, STREAM, SURFACE = "0.25", "#D55E00", "#0072B2"
-
-
-def read_result(path):
-    try:
-        with open(path, encoding="utf-8") as file:
-            return json.load(file)
-    except ValueError as error:
-        raise PlotError(f"{path}: is damaged ({error})", 4) from None
 
 
 def lattice(x, y, values):
@@ -151,5 +142,5 @@ def draw(results, output):
     path = results.path("flow.json")
     if not os.path.exists(path):
         return []
-    result = read_result(path)
+    result = read_json(path)
     return [p for p in (draw_net(results, output, result), draw_discharges(results, output)) if p]

@@ -2,7 +2,6 @@
 
 stability.json, trials.csv, slip_surface.csv and the frame of the set soil are read; a run's folder has none of them.
 """
-import json
 import os
 
 import matplotlib.patheffects as patheffects
@@ -11,15 +10,7 @@ import numpy as np
 
 import figure_style as style
 from field_figures import Section
-from results import PlotError
-
-
-def read_result(path):
-    try:
-        with open(path, encoding="utf-8") as file:
-            return json.load(file)
-    except ValueError as error:
-        raise PlotError(f"{path}: is damaged ({error})", 4) from None
+from results import PlotError, read_json
 
 
 def number_text(value):
@@ -77,7 +68,7 @@ def draw(results, output):
     path = results.path("stability.json")
     if not os.path.exists(path):
         return []
-    result = read_result(path)
+    result = read_json(path)
     trials = results.table("trials.csv", needs_time=False)
     if trials is None:
         raise PlotError(f"{results.folder}: stability.json lies there without trials.csv", 4)

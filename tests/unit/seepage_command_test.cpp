@@ -10,13 +10,15 @@
 #include <sstream>
 
 #include "app/case.hpp"
-#include "app/program.hpp"
 #include "app/seepage.hpp"
 #include "core/error.hpp"
 #include "io/csv.hpp"
+#include "tests/unit/program_support.hpp"
 #include "tests/unit/reference_csv.hpp"
 
 using namespace polder;
+using app::test::polder_program;
+using app::test::Scratch;
 namespace fs = std::filesystem;
 using Mode = coupling::Stage::Mode;
 using Until = coupling::Stage::Until;
@@ -27,19 +29,6 @@ const std::string kSource = POLDER_SOURCE_DIR;
 
 std::string case_file(const std::string& name) {
   return kSource + "/cases/" + name + "/" + name + ".toml";
-}
-
-struct Scratch {
-  fs::path path = fs::temp_directory_path() / ("polder_seepage_test_" + std::to_string(::getpid()));
-  Scratch() { fs::remove_all(path); }
-  ~Scratch() { fs::remove_all(path); }
-};
-
-int polder_program(const std::vector<std::string>& words, std::string* err = nullptr) {
-  std::ostringstream out, errors;
-  const int code = app::run_program(words, out, errors);
-  if (err != nullptr) *err = errors.str();
-  return code;
 }
 
 nlohmann::json seepage(const fs::path& folder, const std::string& name,
@@ -56,7 +45,7 @@ nlohmann::json seepage(const fs::path& folder, const std::string& name,
 }  // namespace
 
 TEST_CASE("a dam: discharge of Charny, seepage face of Polubarinova-Kochina") {
-  const Scratch scratch;
+  const Scratch scratch("seepage_test");
   constexpr double kCharny = 1e-4 * (4.0 * 4.0 - 1.2 * 1.2) / (2 * 4.0);  // k (h1^2 - h2^2) / 2 L
   const nlohmann::json flow = seepage(scratch.path, "dam-seepage");
   CHECK(flow.at("steady").get<bool>());
@@ -84,7 +73,7 @@ TEST_CASE("a dam: discharge of Charny, seepage face of Polubarinova-Kochina") {
 }
 
 TEST_CASE("a sheet pile: discharge, exit gradient and heave of Harr, of first order in the cell") {
-  const Scratch scratch;
+  const Scratch scratch("seepage_test");
   const ReferenceCsv exact("sheet_pile.csv");
   double share = 0, exit = 0;
   REQUIRE(exact.columns.at(1) == "q/(kh)[-]");
@@ -110,7 +99,7 @@ TEST_CASE("a sheet pile: discharge, exit gradient and heave of Harr, of first or
 }
 
 TEST_CASE("a saturated case of moving soil: steady flow upwards") {
-  const Scratch scratch;
+  const Scratch scratch("seepage_test");
   const nlohmann::json flow = seepage(scratch.path, "upward-seepage");
   CHECK(flow.at("steady").get<bool>());
   constexpr double kGradient = 0.6 * 0.99;
@@ -130,7 +119,7 @@ TEST_CASE("a saturated case of moving soil: steady flow upwards") {
 }
 
 TEST_CASE("a levee under its phreatic line lets no water out where soil lies above") {
-  const Scratch scratch;
+  const Scratch scratch("seepage_test");
   const nlohmann::json flow = seepage(scratch.path, "levee");
   const double in = flow.at("inflow"), out = flow.at("outflow");
   CHECK(in > 0);
@@ -172,7 +161,7 @@ TEST_CASE("stages of a case with a rigid skeleton") {
 }
 
 TEST_CASE("what seepage refuses") {
-  const Scratch scratch;
+  const Scratch scratch("seepage_test");
   std::string err;
   CHECK(polder_program({"seepage", case_file("column"), "-o", scratch.path.string()}, &err) == 2);
   CHECK(err.find("no water that flows") != std::string::npos);

@@ -9,29 +9,18 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "app/program.hpp"
 #include "app/slip_surface.hpp"
 #include "io/csv.hpp"
+#include "tests/unit/program_support.hpp"
 
 using namespace polder;
+using app::test::polder_program;
+using app::test::Scratch;
 namespace fs = std::filesystem;
 
 namespace {
 
 const std::string kCase = std::string(POLDER_SOURCE_DIR) + "/cases/slope-acads/slope-acads.toml";
-
-struct Scratch {
-  fs::path path = fs::temp_directory_path() / ("polder_stability_test_" + std::to_string(::getpid()));
-  Scratch() { fs::remove_all(path); }
-  ~Scratch() { fs::remove_all(path); }
-};
-
-int polder_program(const std::vector<std::string>& words, std::string* err = nullptr) {
-  std::ostringstream out, errors;
-  const int code = app::run_program(words, out, errors);
-  if (err != nullptr) *err = errors.str();
-  return code;
-}
 
 nlohmann::json json_of(const fs::path& file) {
   std::ifstream in(file);
@@ -66,7 +55,7 @@ TEST_CASE("a slip surface is the line between what moves and what rests") {
 }
 
 TEST_CASE("stability of a case and of the folder of a run") {
-  const Scratch scratch;
+  const Scratch scratch("stability_test");
   const std::string folder = scratch.path / "case", run = scratch.path / "run";
   REQUIRE(polder_program({"stability", kCase, "-o", folder, "--set", "grid.cell=2", "--threads", "1"}) == 0);
   const auto found = json_of(fs::path(folder) / "stability.json");
@@ -92,7 +81,7 @@ TEST_CASE("stability of a case and of the folder of a run") {
 }
 
 TEST_CASE("what stability refuses") {
-  const Scratch scratch;
+  const Scratch scratch("stability_test");
   const std::string folder = scratch.path;
   std::string err;
   CHECK(polder_program({"stability", kCase, "-o", folder, "--stage", "intial"}, &err) == 2);
