@@ -166,6 +166,23 @@ void check_units(const coupling::Measure& m, const std::string& expect, Reader& 
   }
 }
 
+void check_stage(const std::string& name, const std::string& key, Reader& reader) {
+  std::vector<std::string> stages;
+  for (const coupling::Stage& stage : reader.scene.stages) stages.push_back(stage.name);
+  if (std::find(stages.begin(), stages.end(), name) == stages.end())
+    reader.error(key, "the case has no stage \"" + name + "\"" + did_you_mean(name, stages), join(stages));
+}
+
+// A factor of safety is one number at one moment.
+void check_factor(const coupling::Expectation& e, const std::string& expect, Reader& reader) {
+  for (const char* name : {"reference", "time", "from_stage"})
+    if (reader.given(key_path(expect, name)))
+      reader.error(key_path(expect, name), "does not apply here",
+                   "value, at_least or at_most; the moment is that of the measure");
+  if (reader.given(key_path(expect, "norm")) && e.norm != "last")
+    reader.error(key_path(expect, "norm"), "a factor of safety is one number", "last");
+}
+
 }  // namespace
 
 void check_names(Reader& reader) {
@@ -227,6 +244,8 @@ void check_measures(Reader& reader) {
                      "the case has no body \"" + m.body + "\"" + did_you_mean(m.body, bodies), join(bodies));
     }
     if (m.kind == Kind::history && !reader.failed(item_key("measure", i))) check_column(m, i, reader);
+    if (m.kind == Kind::stability && !m.stage.empty())
+      check_stage(m.stage, item_key("measure", i) + ".stage", reader);
     const std::string key = item_key("measure", i) + ".at";
     if (m.kind == Kind::history || reader.failed("grid") || !reader.given(key) || reader.failed(key))
       continue;
@@ -261,18 +280,11 @@ void check_measures(Reader& reader) {
                    "a profile has many values, none is the first or last",
                    "norm = \"l2\", \"max\" with a reference; "
                    "\"largest\", \"smallest\", \"magnitude\", \"mean\"");
-    std::vector<std::string> stages;
-    if (measure != scene.measures.end() && !reader.failed(item_key("expect", i)))
+    if (measure != scene.measures.end() && !reader.failed(item_key("expect", i))) {
       check_units(*measure, item_key("expect", i), reader);
-    bool known_stage = e.from_stage.empty();
-    for (const auto& stage : scene.stages) {
-      stages.push_back(stage.name);
-      known_stage = known_stage || stage.name == e.from_stage;
+      if (measure->kind == Kind::stability) check_factor(e, item_key("expect", i), reader);
     }
-    if (!known_stage)
-      reader.error(item_key("expect", i) + ".from_stage",
-                   "the case has no stage \"" + e.from_stage + "\"" + did_you_mean(e.from_stage, stages),
-                   join(stages));
+    if (!e.from_stage.empty()) check_stage(e.from_stage, item_key("expect", i) + ".from_stage", reader);
   }
 }
 

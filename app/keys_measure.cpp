@@ -15,6 +15,9 @@ using Kind = Measure::Kind;
 
 namespace {
 
+// The one quantity of kind = "stability".
+const std::string kFactorOfSafety = "factor_of_safety";
+
 std::vector<std::string> names_of(const std::vector<coupling::Quantity>& quantities, int dimension) {
   std::vector<std::string> names;
   for (const auto& q : quantities) {
@@ -58,6 +61,14 @@ void check_quantity(Measure& m, const std::string& path, Reader& reader) {
                    reader.dimension() == 2 ? "x, y" : "x, y, z");
   }
   if (m.kind == Kind::history) return;
+  if (m.kind == Kind::stability) {
+    if (m.quantity != kFactorOfSafety)
+      reader.error(
+          key_path(path, "quantity"),
+          "stability has no quantity \"" + m.quantity + "\"" + did_you_mean(m.quantity, {kFactorOfSafety}),
+          kFactorOfSafety);
+    return;
+  }
   const bool cell = m.kind == Kind::cell || m.kind == Kind::cells;
   const std::vector<std::string> names =
       names_of(cell ? coupling::cell_quantities() : coupling::particle_quantities(), reader.dimension());
@@ -151,15 +162,17 @@ const Table<Measure>& measure_keys() {
                         {"history", Kind::history},
                         {"body", Kind::body},
                         {"particles", Kind::particles},
-                        {"cells", Kind::cells}}),
+                        {"cells", Kind::cells},
+                        {"stability", Kind::stability}}),
           &M::kind,
           "One value in time: particle follows the one nearest to `at`; cell stays at `at`; history is a "
           "column of history.csv; body is the mean over a body's mass. Profiles, many values at a time in "
-          "profile_NAME.csv: particles, of all; cells, of all with water.");
+          "profile_NAME.csv: particles, of all; cells, of all with water. stability: one number for a run, "
+          "by strength reduction as `polder stability` does it; the search is in stability_NAME.csv.");
     t.add("quantity", text(), &M::quantity,
           "particle, particles, body: " + join(names_of(coupling::particle_quantities(), 3)) +
               "; cell, cells: " + join(names_of(coupling::cell_quantities(), 3)) +
-              "; history: the name of a column.")
+              "; history: the name of a column; stability: " + kFactorOfSafety + ".")
         .required();
     t.add("at", vector(dimension::kLength), &M::at, "Place in the initial state.")
         .required()
@@ -174,10 +187,15 @@ const Table<Measure>& measure_keys() {
         .only_with("kind", "kind = \"particles\" or \"cells\"", profile);
     t.add("within", box(), &M::within, "Only what lies in this box, in the coordinates that `along` names.")
         .only_with("kind", "kind = \"particles\" or \"cells\"", profile);
+    t.add("stage", text(), &M::stage,
+          "The factor of safety at the end of this stage; default: at the end of the run.")
+        .only_with("kind", "kind = \"stability\"", [](const M& m) { return m.kind == Kind::stability; });
     t.add("every", number(dimension::kTime, kNotNegative), &M::every,
           "Time between records; the shortest of all measures counts. 0: with every line of the history. A "
           "profile has its own; 0: at the end of each stage and at the times of expectations. Those are "
-          "recorded for every measure.");
+          "recorded for every measure.")
+        .only_with("kind", "a kind other than \"stability\"",
+                   [](const M& m) { return m.kind != Kind::stability; });
     t.check(check_quantity);
     return t;
   }();

@@ -6,6 +6,7 @@
 
 #include "app/columns.hpp"
 #include "app/profiles.hpp"
+#include "app/stability_measures.hpp"
 #include "app/tables.hpp"
 #include "core/error.hpp"
 
@@ -40,6 +41,11 @@ Curve read_profile(const coupling::Measure& m, const RunFolder& folder, double s
 
 Curve read_measure(const coupling::Measure& m, const RunFolder& folder, double start, double end) {
   if (m.is_profile()) return read_profile(m, folder, start, end);
+  if (m.kind == coupling::Measure::Kind::stability) {
+    const CsvTable table(StabilityMeasures::file(folder, m));
+    const auto time = table.column(0), factor = table.column(1);
+    return {{time.begin(), time.end()}, {factor.begin(), factor.end()}};
+  }
   bool in_history = false;
   const std::string name = measure_column(m, in_history);
   const CsvTable table(in_history ? folder.history() : folder.probes(),

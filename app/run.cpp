@@ -14,6 +14,7 @@
 #include "app/interrupt.hpp"
 #include "app/profiles.hpp"
 #include "app/size_estimate.hpp"
+#include "app/stability_measures.hpp"
 #include "app/summary.hpp"
 #include "app/tables.hpp"
 #include "core/threads.hpp"
@@ -73,6 +74,7 @@ class Run {
   Simulation simulation_;
   Tables tables_;
   Profiles profiles_;
+  StabilityMeasures stability_;
   std::unique_ptr<Frames> frames_;
   RunSummary summary_;
   double until_ = 0;
@@ -131,7 +133,8 @@ Run::Run(const RunOptions& options, Scene scene)
       log_(log_options(options, folder_)),
       simulation_(scene),
       tables_(simulation_, folder_, table_mode(options)),
-      profiles_(simulation_, folder_, table_mode(options)) {
+      profiles_(simulation_, folder_, table_mode(options)),
+      stability_(simulation_, folder_, options.restart) {
   summary_.case_file = options.case_file;
   summary_.threads = threads();
   summary_.stage_wall_seconds.resize(scene.stages.size());
@@ -171,6 +174,7 @@ void Run::restore() {
   frames_->visit(visitor);
   tables_.drop_after(simulation_.time());
   profiles_.drop_after(simulation_.time());
+  stability_.drop_after(simulation_.time());
   told_ = simulation_.events().size();
 }
 
@@ -294,8 +298,13 @@ RunOutcome Run::go() {
       profiles_.see(simulation_);
       frames_->see(simulation_);
     }
-    while (!is_over() && !InterruptGuard::requested()) step();
-    if (is_over()) {
+    const auto goes_on = [] { return !InterruptGuard::requested(); };
+    bool complete = stability_.see(simulation_, goes_on);
+    while (complete && !is_over() && goes_on()) {
+      step();
+      complete = stability_.see(simulation_, goes_on);
+    }
+    if (complete && is_over()) {
       finish(outcome);
     } else {
       write_checkpoint();

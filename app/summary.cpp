@@ -6,6 +6,8 @@
 #include <limits>
 
 #include "app/columns.hpp"
+#include "app/measured.hpp"
+#include "app/stability_measures.hpp"
 #include "app/tables.hpp"
 #include "app/version.hpp"
 #include "core/simd_level.hpp"
@@ -61,6 +63,11 @@ Json measures(const Simulation& s, const RunFolder& folder, const std::vector<co
   std::error_code failure;
   const bool probes = std::filesystem::exists(folder.probes(), failure);
   for (const coupling::Measure& m : s.scene().measures) {
+    if (m.kind == coupling::Measure::Kind::stability) {
+      if (std::filesystem::exists(StabilityMeasures::file(folder, m), failure))
+        all[m.name] = number_of("last", read_measure(m, folder, 0, s.time()), false);
+      continue;
+    }
     bool in_history = false;
     const std::string name = measure_column(m, in_history);
     if (in_history) {

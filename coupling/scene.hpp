@@ -279,11 +279,13 @@ struct Measure {
   std::string name;
   // particle: the material point nearest to `at` in the initial state is followed; cell: the water in the
   // cell at `at`; history: the column `quantity` of the history; body: the mean over a body's mass.
-  // Profiles, many values at a time: particles: of all points; cells: of all cells with water.
-  enum class Kind { particle, cell, history, body, particles, cells } kind = Kind::particle;
+  // Profiles, many values at a time: particles: of all points; cells: of all cells with water. stability: the
+  // factor of safety at one moment, one number for a run.
+  enum class Kind { particle, cell, history, body, particles, cells, stability } kind = Kind::particle;
   std::string quantity;
   Vector3 at{};
   std::string body;   // body: which
+  std::string stage;  // stability: at the end of which; empty: of the run
   std::string along;  // profiles: the coordinate, x, y or z at present, initial_x ... at the start
   std::optional<std::array<Vector3, 2>> within;  // profiles: only inside this box, of the same coordinates
   double every = 0;                              // [s], 0 = every history line; profiles: only where expected

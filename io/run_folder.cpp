@@ -53,9 +53,10 @@ std::vector<fs::path> results_in(const fs::path& folder) {
 bool RunFolder::is_result(const std::string& file_name) {
   std::string_view name = file_name;
   if (name.ends_with(kTemporarySuffix)) name.remove_suffix(kTemporarySuffix.size());
-  // profile_NAME.csv, and reference_FILE.csv: what is expected, copied beside the results
+  // profile_NAME.csv, stability_NAME.csv, and reference_FILE.csv: what is expected, copied beside the results
   const bool numbered =
-      (name.starts_with("profile_") || name.starts_with("reference_")) && name.ends_with(".csv");
+      (name.starts_with("profile_") || name.starts_with("stability_") || name.starts_with("reference_")) &&
+      name.ends_with(".csv");
   return numbered || std::find(kFiles.begin(), kFiles.end(), name) != kFiles.end() || is_frame_or_index(name);
 }
 
