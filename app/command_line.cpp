@@ -46,16 +46,23 @@ std::optional<int> Arguments::integer(const std::string& option, int min, int ma
   return n;
 }
 
+std::vector<double> Arguments::times(const std::string& option) const {
+  std::vector<double> list;
+  for (const std::string& text : all(option)) {
+    const Quantity q = parse_quantity(text);
+    const bool is_time = q.error.empty() && (!q.has_unit || q.dimension == dimension::kTime);
+    if (!is_time || !(q.value > 0) || std::isinf(q.value))
+      throw InputError(option + ": \"" + text +
+                       "\" is not a time greater than 0; allowed: a number in s, or with a unit (" +
+                       unit_examples(dimension::kTime) + ")");
+    list.push_back(q.value);
+  }
+  return list;
+}
+
 std::optional<double> Arguments::time(const std::string& option) const {
-  const auto text = value(option);
-  if (!text) return std::nullopt;
-  const Quantity q = parse_quantity(*text);
-  const bool is_time = q.error.empty() && (!q.has_unit || q.dimension == dimension::kTime);
-  if (!is_time || !(q.value > 0) || std::isinf(q.value))
-    throw InputError(option + ": \"" + *text +
-                     "\" is not a time greater than 0; allowed: a number in s, or with a unit (" +
-                     unit_examples(dimension::kTime) + ")");
-  return q.value;
+  const std::vector<double> list = times(option);
+  return list.empty() ? std::nullopt : std::optional(list.back());
 }
 
 Arguments Command::read(const std::vector<std::string>& given) const {

@@ -28,6 +28,7 @@ class Arguments {
   // Throw InputError if the value is not what is due.
   std::optional<int> integer(const std::string& option, int min, int max) const;
   std::optional<double> time(const std::string& option) const;  // [s], plain or with a unit
+  std::vector<double> times(const std::string& option) const;   // of a repeatable option
 
  private:
   friend struct Command;

@@ -4,6 +4,7 @@
 
 #include "app/case.hpp"
 #include "app/check_scene.hpp"
+#include "app/compare.hpp"
 #include "app/digits.hpp"
 #include "app/run.hpp"
 #include "app/seepage.hpp"
@@ -125,6 +126,7 @@ const std::vector<Command>& commands() {
         {"--quick", "", "", "Without CASE: only the quick ones, which take seconds.", false},
         {"--junit", "", "FILE", "Write the verdicts as JUnit XML, for CI services.", false}},
        verify_command},
+      compare_command(),
       seepage_command(),
       stability_command(),
       {"schema",

@@ -16,14 +16,6 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSlack = 1e-9;  // of times that are sums of steps, relative
 
-double interpolate(const std::vector<double>& x, const std::vector<double>& y, double at) {
-  const auto after = std::upper_bound(x.begin(), x.end(), at);
-  if (after == x.begin()) return y.front();
-  if (after == x.end()) return y.back();
-  const auto i = static_cast<std::size_t>(after - x.begin());
-  return y[i - 1] + (at - x[i - 1]) / (x[i] - x[i - 1]) * (y[i] - y[i - 1]);
-}
-
 Curve read_profile(const coupling::Measure& m, const RunFolder& folder, double start, double end) {
   const CsvTable table(Profiles::file(folder, m));
   const auto time = table.column(0), at = table.column(1), value = table.column(2);
@@ -39,6 +31,14 @@ Curve read_profile(const coupling::Measure& m, const RunFolder& folder, double s
 
 }  // namespace
 
+double interpolate(const std::vector<double>& x, const std::vector<double>& y, double at) {
+  const auto after = std::upper_bound(x.begin(), x.end(), at);
+  if (after == x.begin()) return y.front();
+  if (after == x.end()) return y.back();
+  const auto i = static_cast<std::size_t>(after - x.begin());
+  return y[i - 1] + (at - x[i - 1]) / (x[i] - x[i - 1]) * (y[i] - y[i - 1]);
+}
+
 Curve read_measure(const coupling::Measure& m, const RunFolder& folder, double start, double end) {
   if (m.is_profile()) return read_profile(m, folder, start, end);
   if (m.kind == coupling::Measure::Kind::stability) {
@@ -47,18 +47,31 @@ Curve read_measure(const coupling::Measure& m, const RunFolder& folder, double s
     return {{time.begin(), time.end()}, {factor.begin(), factor.end()}};
   }
   bool in_history = false;
-  const std::string name = measure_column(m, in_history);
+  measure_column(m, in_history);
   const CsvTable table(in_history ? folder.history() : folder.probes(),
-                       in_history ? std::vector<std::string>{"dt_limit"} : std::vector<std::string>{});
-  const std::string column = find_column(table.columns(), name);
-  if (column.empty()) throw InputError("the run has no column \"" + name + "\"");
-  const auto time = table.column("time[s]"), value = table.column(column);
+                       in_history ? history_words() : std::vector<std::string>{});
+  return part(measured_curve(m, table), start, end);
+}
+
+Curve part(const Curve& all, double start, double end) {
   Curve curve;
-  for (std::size_t i = 0; i < time.size(); ++i) {
-    if (time[i] < start * (1 - kSlack) || time[i] > end * (1 + kSlack)) continue;
-    curve.x.push_back(time[i] - start), curve.value.push_back(value[i]);
+  for (std::size_t i = 0; i < all.x.size(); ++i) {
+    if (all.x[i] < start * (1 - kSlack) || all.x[i] > end * (1 + kSlack)) continue;
+    curve.x.push_back(all.x[i] - start), curve.value.push_back(all.value[i]);
   }
   return curve;
+}
+
+std::vector<std::string> history_words() {
+  return {"dt_limit"};
+}
+
+Curve measured_curve(const coupling::Measure& m, const CsvTable& table) {
+  bool in_history = false;
+  const std::string name = measure_column(m, in_history), column = find_column(table.columns(), name);
+  if (column.empty()) throw InputError("the run has no column \"" + name + "\"");
+  const auto time = table.column("time[s]"), value = table.column(column);
+  return {{time.begin(), time.end()}, {value.begin(), value.end()}};
 }
 
 Curve read_reference(const CsvTable& table, const std::string& wanted, bool profile) {

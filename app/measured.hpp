@@ -18,9 +18,22 @@ struct Curve {
 // InputError if the run has no such column.
 Curve read_measure(const coupling::Measure& measure, const RunFolder& folder, double start, double end);
 
+// The columns of history.csv that hold words.
+std::vector<std::string> history_words();
+
+// A measure that is no profile over all times of the table that holds it, history.csv or probes.csv;
+// InputError if it has no such column.
+Curve measured_curve(const coupling::Measure& measure, const CsvTable& table);
+
 // The column of a reference over its column of times (`time`, `t`, else the first); of a profile over the
 // first.
 Curve read_reference(const CsvTable& table, const std::string& column, bool profile);
+
+// Linear between the points, constant beyond the ends; x rises.
+double interpolate(const std::vector<double>& x, const std::vector<double>& y, double at);
+
+// The points from `start` to `end`, times counted from start.
+Curve part(const Curve& curve, double start, double end);
 
 // The curve up to `end`, with the value between two points there.
 Curve cut(const Curve& curve, double end);

@@ -18,7 +18,7 @@ int code(ExitCode c) {
 
 // Commands of the design that do not exist yet, so that nobody looks for the mistake in the spelling.
 bool is_later(const std::string& name) {
-  static const std::vector<std::string> names{"compare", "element", "calibrate-band", "report"};
+  static const std::vector<std::string> names{"element", "calibrate-band", "report"};
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 

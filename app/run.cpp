@@ -39,17 +39,6 @@ class Clock {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// Better to refuse than to be killed halfway.
-void check_memory(const Scene& scene) {
-  const double available =
-      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  const double needed = estimate_size(scene).memory;
-  if (needed > available)
-    throw EnvironmentError("the case needs about " + digits(needed / 1e9, 2) +
-                           " GB of memory, this machine has " + digits(available / 1e9, 2) +
-                           " GB; a larger grid.cell needs less");
-}
-
 // One run: the simulation with everything that watches it.
 class Run {
  public:
@@ -119,6 +108,7 @@ Log::Options log_options(const RunOptions& o, const RunFolder& folder) {
   log.file = folder.log();
   log.append = o.restart;
   log.quiet = o.quiet;
+  log.progress_only = o.progress_only;
   return log;
 }
 
@@ -128,7 +118,7 @@ CsvWriter::Mode table_mode(const RunOptions& o) {
 
 Run::Run(const RunOptions& options, Scene scene)
     : options_(options),
-      resolved_(write_case(with_references_beside(scene))),
+      resolved_(resolved_case(scene)),
       folder_(options.folder, folder_mode(options)),
       log_(log_options(options, folder_)),
       simulation_(scene),
@@ -331,6 +321,21 @@ RunOutcome Run::go() {
 
 std::filesystem::path default_folder(const std::string& case_file) {
   return std::filesystem::path("results") / std::filesystem::path(case_file).stem();
+}
+
+std::string resolved_case(const Scene& scene) {
+  return write_case(with_references_beside(scene));
+}
+
+// Better to refuse than to be killed halfway.
+void check_memory(const Scene& scene) {
+  const double available =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  const double needed = estimate_size(scene).memory;
+  if (needed > available)
+    throw EnvironmentError("the case needs about " + digits(needed / 1e9, 2) +
+                           " GB of memory, this machine has " + digits(available / 1e9, 2) +
+                           " GB; a larger grid.cell needs less");
 }
 
 RunOutcome run_case(const RunOptions& options) {

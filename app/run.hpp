@@ -20,6 +20,7 @@ struct RunOptions {
   std::vector<std::string> settings;  // "key=value"
   std::filesystem::path folder;       // of the results
   bool overwrite = false, restart = false, quiet = false;
+  bool progress_only = false;        // on the terminal; the log has everything
   int threads = 0;                   // 0: see choose_threads()
   std::optional<double> until;       // simulated time [s] at which to stop
   std::vector<std::string> remarks;  // told in the log before the run
@@ -39,6 +40,12 @@ RunOutcome run_case(const RunOptions& options);
 
 // The same for a scene that has been read from the options' case and changed; their settings are not applied.
 RunOutcome run_scene(const RunOptions& options, coupling::Scene scene);
+
+// The text of case.toml in the folder of a run: the scene with every default, its references beside it.
+std::string resolved_case(const coupling::Scene& scene);
+
+// Throws EnvironmentError if the machine has less memory than the scene needs.
+void check_memory(const coupling::Scene& scene);
 
 // Where the results of a case go unless the user says otherwise: results/NAME.
 std::filesystem::path default_folder(const std::string& case_file);

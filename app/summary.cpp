@@ -93,6 +93,20 @@ std::string program_build() {
   return std::string(kBuildType) + ", vector level " + to_string(simd_level());
 }
 
+Json expectation_json(const ExpectationResult& e) {
+  Json item = Json::object();
+  item["measure"] = e.measure;
+  item["norm"] = e.norm;
+  if (!e.when.empty()) item["when"] = e.when;
+  item["measured"] = e.measured;
+  item["expected"] = e.expected;
+  item["error"] = e.error;
+  item["tolerance"] = e.tolerance;
+  item["pass"] = e.pass;
+  if (!e.problem.empty()) item["problem"] = e.problem;
+  return item;
+}
+
 void write_summary(const Simulation& s, const RunFolder& folder, const RunSummary& summary) {
   const std::vector<coupling::Column> history = s.history();
   Json root = Json::object();
@@ -142,7 +156,9 @@ void write_summary(const Simulation& s, const RunFolder& folder, const RunSummar
   root["cells"] = std::move(cells);
   root["dems"] = 0;
   root["steps"] = s.steps();
+  // Times are those of this call, which a restart makes shorter than the run.
   const double computed = static_cast<double>(s.steps() - summary.first_step);
+  root["computed_steps"] = s.steps() - summary.first_step;
   root["particle_steps_per_second"] =
       t.total > 0 ? computed * static_cast<double>(s.particles()) / t.total : 0.0;
   Json dt = Json::object();
@@ -161,19 +177,7 @@ void write_summary(const Simulation& s, const RunFolder& folder, const RunSummar
 
   root["measures"] = measures(s, folder, history);
   Json expectations = Json::array();
-  for (const ExpectationResult& e : summary.expectations) {
-    Json item = Json::object();
-    item["measure"] = e.measure;
-    item["norm"] = e.norm;
-    if (!e.when.empty()) item["when"] = e.when;
-    item["measured"] = e.measured;
-    item["expected"] = e.expected;
-    item["error"] = e.error;
-    item["tolerance"] = e.tolerance;
-    item["pass"] = e.pass;
-    if (!e.problem.empty()) item["problem"] = e.problem;
-    expectations.push_back(std::move(item));
-  }
+  for (const ExpectationResult& e : summary.expectations) expectations.push_back(expectation_json(e));
   root["expectations"] = std::move(expectations);
   root["peak_memory_bytes"] = peak_memory_bytes();
   root["skipped"] = Json::array_of(s.skipped());

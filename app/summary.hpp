@@ -6,6 +6,7 @@
 
 #include "app/expectations.hpp"
 #include "coupling/simulation.hpp"
+#include "io/json.hpp"
 #include "io/run_folder.hpp"
 
 namespace polder::app {
@@ -23,6 +24,8 @@ struct RunSummary {
 
 void write_summary(const coupling::Simulation& simulation, const RunFolder& folder,
                    const RunSummary& summary);
+
+Json expectation_json(const ExpectationResult& expectation);
 
 // "0.1.0", and how the program was built: "Release, vector level avx2".
 std::string program_version();

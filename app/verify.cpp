@@ -8,6 +8,7 @@
 #include "app/commands.hpp"
 #include "app/digits.hpp"
 #include "app/run.hpp"
+#include "app/text_table.hpp"
 #include "io/atomic_file.hpp"
 #include "io/log.hpp"
 
@@ -72,30 +73,8 @@ std::vector<std::string> named_cases(const std::vector<std::string>& words) {
   return list;
 }
 
-std::string padded(std::string text, std::size_t width) {
-  if (text.size() < width) text.resize(width, ' ');
-  return text + "  ";
-}
-
-// Columns as wide as their widest cell.
-void print_aligned(const std::vector<std::vector<std::string>>& rows, std::ostream& out) {
-  std::vector<std::size_t> width;
-  for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      if (i == width.size()) width.push_back(0);
-      width[i] = std::max(width[i], row[i].size());
-    }
-  for (const auto& row : rows) {
-    std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i) line += padded(row[i], width[i]);
-    line.erase(line.find_last_not_of(' ') + 1);
-    out << line << '\n';
-  }
-}
-
 void print_table(const std::vector<Verdict>& verdicts, std::ostream& out) {
-  std::vector<std::vector<std::string>> rows{
-      {"case", "measure", "norm", "", "measured", "expected", "error", "tolerance", "", "wall"}};
+  TextRows rows{{"case", "measure", "norm", "", "measured", "expected", "error", "tolerance", "", "wall"}};
   const auto number = [](double x, int n) { return std::isnan(x) ? std::string("-") : digits(x, n); };
   double wall = 0;
   int missed = 0, all = 0;
@@ -110,7 +89,7 @@ void print_table(const std::vector<Verdict>& verdicts, std::ostream& out) {
       name.clear(), seconds.clear();  // once for each case
     }
   }
-  print_aligned(rows, out);
+  out << aligned_table(rows);
   for (const Verdict& v : verdicts)
     if (!v.failure.empty()) out << v.name << "  FAILED: " << v.failure << '\n';
   out << all - missed << " of " << all << " expectations of " << verdicts.size()

@@ -99,7 +99,7 @@ void Log::heading(std::string_view version, std::string_view build, int threads)
 
 void Log::line(std::string_view text) {
   to_file(text);
-  if (!options_.quiet) to_terminal(text);
+  if (!options_.quiet && !options_.progress_only) to_terminal(text);
 }
 
 void Log::warning(std::string_view text) {

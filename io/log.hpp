@@ -39,6 +39,7 @@ class Log {
     std::filesystem::path file;  // empty: no file
     bool append = false;         // a restart goes on in the same file
     bool quiet = false;          // nothing on the terminal but errors
+    bool progress_only = false;  // nothing on the terminal but progress and errors
     std::FILE* terminal = stderr;
     std::optional<bool> is_terminal;  // default: asked from the system
     std::function<double()> clock;    // wall clock [s], default: the steady clock

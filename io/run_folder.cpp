@@ -65,6 +65,10 @@ RunFolder::RunFolder(fs::path path, Mode mode) : path_(std::move(path)) {
   if (fs::exists(path_, error) && !fs::is_directory(path_, error)) {
     throw InputError(path_.string() + ": is a file; a folder for the results is wanted");
   }
+  if (mode == Mode::read) {
+    if (!fs::is_directory(path_, error)) throw InputError(path_.string() + ": no such folder");
+    return;
+  }
   if (mode == Mode::restart && !fs::exists(checkpoint(), error)) {
     throw InputError(path_.string() + ": holds no checkpoint.h5 to restart from; run without --restart");
   }

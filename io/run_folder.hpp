@@ -12,6 +12,7 @@ class RunFolder {
     fresh,      // refuses a folder that holds results
     overwrite,  // deletes the results in it; files that are not Polder's stay
     restart,    // needs the checkpoint in it
+    read,       // what lies in it is read, nothing is made or changed
   };
 
   // Creates the folder, with its parents, if it is missing. InputError if the mode does not fit what is

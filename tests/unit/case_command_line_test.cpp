@@ -91,8 +91,8 @@ TEST_CASE("the program's own words") {
   CHECK(run({"check", "--help"}).out.starts_with("usage: polder check CASE"));
   CHECK(run({"chekc", "x"}).code == 2);
   CHECK(run({"chekc", "x"}).err.find("did you mean \"check\"?") != std::string::npos);
-  CHECK(run({"compare", "x"}).code == 2);
-  CHECK(run({"compare", "x"}).err.starts_with("polder: compare: not in this version; allowed: "));
+  CHECK(run({"element", "x"}).code == 2);
+  CHECK(run({"element", "x"}).err.starts_with("polder: element: not in this version; allowed: "));
   CHECK(run({"plot", "x"}).err.find("script `polder`") != std::string::npos);
   CHECK(run({"check", "nowhere.toml"}).code == 2);
   CHECK(run({"check", "nowhere.toml"}).err == "nowhere.toml: no such file\n");

@@ -1,0 +1,79 @@
+// Runs of one case beside each other: what each measured, how far variants (formulations) differ, and how
+// much of that is the error of their cells and steps (curve_family.hpp).
+//
+// Compared is what has a history: measures of particles, cells and bodies, those of the history but for
+// errors and noise, and some columns of the history without being asked. Times count from the start of the
+// first stage that is not a search for equilibrium, whose pseudo-time means nothing; such stages are left out
+// everywhere. Differences are given as shares of the range of the quantity in the finest runs.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/curve_family.hpp"
+#include "app/run_record.hpp"
+
+namespace polder::app {
+
+struct ComparedRun {
+  std::string variant, label;
+  RunRecord run;        // without a folder where nothing could be read
+  std::string failure;  // why it is not complete; empty: it is
+  bool reused = false;  // made earlier
+  double start = 0;     // of the times compared [s]
+  double cell() const { return run.scene.grid.cell; }
+  double step() const { return run.scene.numerics.time_step.value_or(run.scene.numerics.courant); }
+  bool has_results() const { return !run.folder.empty(); }
+};
+
+// Shares of the range. `run`: whose error it is, the finest of the variant.
+struct DiscretisationError {
+  std::size_t run = 0;
+  FamilyError cells, steps;
+  bool known() const { return cells.known() || steps.known(); }
+  double l2() const;  // of cells and steps together
+  double max() const;
+};
+
+enum class Verdict {
+  unknown,   // no family tells the discretisation error of one of them
+  alike,     // the difference is within the sum of both errors
+  at_times,  // only its largest value is beyond
+  differ     // beyond in the mean over time
+};
+const char* verdict_text(Verdict verdict);
+
+struct VariantDifference {
+  std::size_t first = 0, second = 0;   // runs
+  CurveDifference difference;          // shares of the range
+  double error_l2 = 0, error_max = 0;  // sum of both discretisation errors, NaN: not known
+  // The same in every size of cells that both have, from coarse to fine: a difference of the formulations
+  // stays as the cells shrink, even where each has a larger error that both share.
+  std::vector<double> by_cell, l2_by_cell;
+  Verdict verdict = Verdict::unknown;
+};
+
+struct ComparedMeasure {
+  coupling::Measure measure;
+  std::string unit;
+  bool asked = true;         // a [[measure]] of the case
+  Extremes extremes;         // of the finest runs
+  std::vector<double> last;  // of every run; NaN: it has none
+  // Of one variant each, and of pairs of them; empty where the quantity is constant.
+  std::vector<DiscretisationError> errors;
+  std::vector<VariantDifference> differences;
+};
+
+struct Comparison {
+  std::string case_file, title;
+  std::vector<ComparedRun> runs;
+  std::vector<std::string> variants;  // in the order of the runs
+  std::vector<ComparedMeasure> measures;
+};
+
+// Fills in starts, variants and measures.
+void compare_runs(Comparison& comparison);
+
+}  // namespace polder::app
