@@ -112,14 +112,19 @@ class Section:
         return np.stack([np.stack(corner, axis=1) for corner in corners], axis=1), keep
 
 
-def layout(panels, aspect):
+def layout(panels, aspect, columns=None, title_lines=1):
     """Axes of equal size with the given aspect (height / width) and one for the colour bar, placed to the point: the
-    panels keep equal scales along x and y. Wide domains are stacked, tall ones stand side by side."""
+    panels keep equal scales along x and y. Wide domains are stacked, tall ones stand side by side, unless the number of
+    columns is given."""
     left, between, right = 0.55, 0.2, 0.95  # inches; on the right: colour bar, its numbers and label
-    below, above, gap = 0.42, 0.25, 0.3
-    columns = 1 if aspect < 0.6 else min(panels, 3)
+    below, above, gap = 0.42, 0.12 + 0.13 * title_lines, 0.17 + 0.13 * title_lines
+    page = style.WIDTH
+    if columns is None:
+        columns = 1 if aspect < 0.6 else min(panels, 3)
+    else:  # narrower ones than this show nothing
+        page = max(page, left + right + columns * (1.8 if aspect < 0.6 else 1.2))
     rows = -(-panels // columns)
-    width = (style.WIDTH - left - right - (columns - 1) * between) / columns
+    width = (page - left - right - (columns - 1) * between) / columns
     height = width * aspect
     if height > 7.0:  # a column of soil: as high as a page allows
         width, height = 7.0 / aspect, 7.0
@@ -145,6 +150,52 @@ def layout(panels, aspect):
     return figure, axes, place(total_width - right + 0.12, middle - 0.5 * bar, 0.12, bar)
 
 
+def box_around(points, section):
+    """Left, bottom, width and height of what is drawn, with a margin."""
+    low, high = np.min(points, axis=0), np.max(points, axis=0)
+    margin = 0.02 * max(high - low) + 0.5 * section.spacing
+    return (*(low - margin), *(high - low + 2 * margin))
+
+
+def draw_panel(figure, axis, shapes, values, field, limits, box, section):
+    """Shapes of Section.shapes() in the colours of their values; returns what a colour bar needs."""
+    left, bottom, width, height = box
+    if section.kind == "PointData":
+        # Squares as wide as the points are apart; wider ones below close the gaps that shear opens between them.
+        spacing = section.spacing * 72 * axis.get_position().width * figure.get_figwidth() / width
+        for widening in (2.0, 1.4, 1.04):
+            drawn = axis.scatter(*shapes[:, 0].T, s=(widening * spacing) ** 2, c=values, marker="s", linewidths=0,
+                                 cmap=field.colours, vmin=limits[0], vmax=limits[1], antialiaseds=False)
+    else:
+        drawn = PolyCollection(shapes, array=values, cmap=field.colours, linewidths=0, antialiaseds=False)
+        drawn.set_clim(*limits)
+        axis.add_collection(drawn)
+    axis.set_xlim(left, left + width)
+    axis.set_ylim(bottom, bottom + height)
+    axis.tick_params(direction="in", top=True, right=True)
+    if section.three_d and axis.get_ylabel():
+        axis.set_ylabel("$z$ [m]")
+    return drawn
+
+
+def draw_phreatic(axis, line, section):
+    if line is not None and not section.three_d:
+        halo = [patheffects.withStroke(linewidth=2.2, foreground="white")]
+        axis.plot(*line, color="#0072B2", linewidth=1.1, path_effects=halo)
+
+
+def save_panel(path, shapes, values, name, field, section):
+    centre = shapes.mean(axis=1)
+    unit = field.unit.replace("$", "").replace("^", "")
+    style.save_table(path, {"x[m]": centre[:, 0], "z[m]" if section.three_d else "y[m]": centre[:, 1],
+                            f"{name}[{unit}]": values})
+
+
+def colour_label(field, section):
+    label = field.label + (f" [{field.unit}]" if field.unit else "")
+    return label + (f", section $y$ = {section.middle:.4g} m" if section.three_d else "")
+
+
 def draw_field(series, name, field, frames, phreatic, output):
     """One figure; returns its path, None if no frame holds anything to draw."""
     section = Section(next((f for f in frames if len(f.points()) > 0), frames[0]), series.kind)
@@ -159,44 +210,17 @@ def draw_field(series, name, field, frames, phreatic, output):
         return None
 
     corners = np.concatenate([shapes.reshape(-1, 2) for _, shapes, _ in panels])
-    (left, bottom), (right, top) = np.min(corners, axis=0), np.max(corners, axis=0)
-    margin = 0.02 * max(right - left, top - bottom) + 0.5 * section.spacing
-    aspect = (top - bottom + 2 * margin) / (right - left + 2 * margin)
-    figure, axes, colour_axis = layout(len(panels), aspect)
+    box = box_around(corners, section)
+    figure, axes, colour_axis = layout(len(panels), box[3] / box[2])
 
     low, high, extend = style.robust_limits([values for _, _, values in panels])
     span = max(abs(series.times()[-1]), abs(series.times()[0]))
     for number, (axis, (frame, shapes, values)) in enumerate(zip(axes, panels)):
-        if series.kind == "PointData":
-            # Squares as wide as the points are apart; wider ones below close the gaps that shear opens between them.
-            width = section.spacing * 72 * axis.get_position().width * figure.get_figwidth() / (right - left + 2 * margin)
-            for widening in (2.0, 1.4, 1.04):
-                drawn = axis.scatter(*shapes[:, 0].T, s=(widening * width) ** 2, c=values, marker="s", linewidths=0,
-                                     cmap=field.colours, vmin=low, vmax=high, antialiaseds=False)
-        else:
-            drawn = PolyCollection(shapes, array=values, cmap=field.colours, linewidths=0, antialiaseds=False)
-            drawn.set_clim(low, high)
-            axis.add_collection(drawn)
-        line = phreatic(frame.time)
-        if line is not None and not section.three_d:
-            halo = [patheffects.withStroke(linewidth=2.2, foreground="white")]
-            axis.plot(*line, color="#0072B2", linewidth=1.1, path_effects=halo)
-        axis.set_xlim(left - margin, right + margin)
-        axis.set_ylim(bottom - margin, top + margin)
+        drawn = draw_panel(figure, axis, shapes, values, field, (low, high), box, section)
+        draw_phreatic(axis, phreatic(frame.time), section)
         axis.set_title(f"{style.letter(number)}  {style.time_text(frame.time, span)}", loc="left")
-        axis.tick_params(direction="in", top=True, right=True)
-        if section.three_d and axis.get_ylabel():
-            axis.set_ylabel("$z$ [m]")
-        centre = shapes.mean(axis=1)
-        unit = field.unit.replace("$", "").replace("^", "")
-        style.save_table(
-            os.path.join(output, f"{series.name}_{name}_{frame.number}.csv"),
-            {"x[m]": centre[:, 0], "z[m]" if section.three_d else "y[m]": centre[:, 1], f"{name}[{unit}]": values},
-        )
-    label = field.label + (f" [{field.unit}]" if field.unit else "")
-    if section.three_d:
-        label += f", section $y$ = {section.middle:.4g} m"
-    figure.colorbar(drawn, cax=colour_axis, label=label, extend=extend)
+        save_panel(os.path.join(output, f"{series.name}_{name}_{frame.number}.csv"), shapes, values, name, field, section)
+    figure.colorbar(drawn, cax=colour_axis, label=colour_label(field, section), extend=extend)
     return style.save_figure(figure, os.path.join(output, f"{series.name}_{name}.png"))
 
 

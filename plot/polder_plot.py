@@ -26,6 +26,8 @@ except ImportError as missing:
     print(f"error: {missing}; polder plot needs python3-numpy, python3-h5py and python3-matplotlib", file=sys.stderr)
     sys.exit(ENVIRONMENT)
 
+import compare_fields
+import compare_figures
 import expectation_figures
 import field_figures
 import history_figures
@@ -39,7 +41,7 @@ def arguments(argv):
     parser = argparse.ArgumentParser(
         prog="polder plot", description="Pictures (PNG) of a run's folder, with the CSV behind each panel."
     )
-    parser.add_argument("folder", metavar="DIR", help="folder with the results of a run")
+    parser.add_argument("folder", metavar="DIR", help="folder with the results of a run, or of polder compare")
     parser.add_argument(
         "--field",
         action="append",
@@ -59,8 +61,10 @@ def arguments(argv):
 
 
 def draw(options):
-    results = Results(options.folder)
     output = options.output or os.path.join(options.folder, "plots")
+    if os.path.exists(os.path.join(options.folder, "compare.json")):
+        return draw_comparison(options, output)
+    results = Results(options.folder)
     os.makedirs(output, exist_ok=True)
     written = field_figures.draw(results, output, options.field, options.time)
     if not options.field:  # a chosen field means: this picture and nothing else
@@ -70,6 +74,13 @@ def draw(options):
         written += stability_figures.draw(results, output)
         written += seepage_figures.draw(results, output)
     return written
+
+
+def draw_comparison(options, output):
+    comparison = compare_figures.Comparison(options.folder)
+    os.makedirs(output, exist_ok=True)
+    written = compare_fields.draw(comparison, output, options.field, options.time)
+    return written if options.field else written + compare_figures.draw(comparison, output)
 
 
 def main(argv):

@@ -4,6 +4,7 @@ Tables: history.csv (time[s], step, dt[s], dt_limit, ...), probes.csv (time[s], 
 phreatic.csv (time[s],x[m],y[m]; one row for each point of the line, in order along it).
 """
 import csv
+import functools
 import glob
 import json
 import os
@@ -135,6 +136,7 @@ class Results:
                     frames.append(frame)
         return Series(name, sorted(frames, key=lambda frame: frame.time))
 
+    @functools.cache
     def case(self):
         """The resolved case; empty if the folder has none."""
         path = self.path("case.toml")
@@ -149,6 +151,7 @@ class Results:
     def vertical(self):
         return "z" if self.case().get("grid", {}).get("space") == "3d" else "y"
 
+    @functools.cache
     def table(self, name, needs_time=True):
         """Columns by name: numbers as arrays, words as lists; None if there is no such file or no row in it."""
         path = self.path(name)
@@ -174,6 +177,7 @@ class Results:
             raise PlotError(f"{path}: has no column time[s]", 4)
         return table
 
+    @functools.cache
     def phreatic(self):
         """A function of time that gives the phreatic line nearest to it as (x, y), or None."""
         table = self.table("phreatic.csv")
