@@ -99,6 +99,8 @@ const char* kind_text(coupling::Measure::Kind kind) {
       return "particles";
     case Kind::cells:
       return "cells";
+    case Kind::stability:
+      return "stability";
   }
   return "";
 }
@@ -110,7 +112,7 @@ Json measure_json(const ComparedMeasure& m) {
   j["quantity"] = m.measure.quantity;
   j["unit"] = m.unit;
   j["asked"] = m.asked;
-  j["range"] = m.extremes.range();
+  j["scale"] = m.scale;
   Json errors = Json::array();
   for (const DiscretisationError& e : m.errors) {
     Json item = Json::object();

@@ -113,12 +113,12 @@ std::string percents(const std::vector<double>& shares) {
 }
 
 std::string differences_table(const Comparison& c) {
-  TextRows rows{{"quantity", "range", "between runs", "mean square", "largest", "at [s]",
+  TextRows rows{{"quantity", "scale", "between runs", "mean square", "largest", "at [s]",
                  "discretisation error", "beyond it", "mean square, coarse to fine cells"}};
   for (const ComparedMeasure& m : c.measures)
     for (const VariantDifference& d : m.differences) {
       const bool known = !std::isnan(d.error_l2);
-      rows.push_back({m.measure.name, number(m.extremes.range()) + " " + m.unit,
+      rows.push_back({m.measure.name, number(m.scale) + (m.unit == "-" ? "" : " " + m.unit),
                       index(d.first) + " and " + index(d.second), percent(d.difference.l2),
                       percent(d.difference.max), number(d.difference.max_at),
                       known ? percent(d.error_l2) + ", largest " + percent(d.error_max)
@@ -276,27 +276,26 @@ std::string runs_csv(const Comparison& c) {
 }
 
 std::string differences_csv(const Comparison& c) {
-  TextRows rows{{"quantity", "unit", "range", "first", "second", "l2[-]", "max[-]", "max_at[s]",
+  TextRows rows{{"quantity", "unit", "scale", "first", "second", "l2[-]", "max[-]", "max_at[s]",
                  "error_l2[-]", "error_max[-]", "beyond"}};
   for (const ComparedMeasure& m : c.measures)
     for (const VariantDifference& d : m.differences)
-      rows.push_back({m.measure.name, m.unit, cell(m.extremes.range()), c.runs[d.first].label,
-                      c.runs[d.second].label, cell(d.difference.l2), cell(d.difference.max),
-                      cell(d.difference.max_at), cell(d.error_l2), cell(d.error_max),
-                      verdict_text(d.verdict)});
+      rows.push_back({m.measure.name, m.unit, cell(m.scale), c.runs[d.first].label, c.runs[d.second].label,
+                      cell(d.difference.l2), cell(d.difference.max), cell(d.difference.max_at),
+                      cell(d.error_l2), cell(d.error_max), verdict_text(d.verdict)});
   return csv(rows);
 }
 
 std::string errors_csv(const Comparison& c) {
-  TextRows rows{{"quantity", "unit", "range", "run", "variant", "cell_members", "cell_order[-]", "cell_l2[-]",
+  TextRows rows{{"quantity", "unit", "scale", "run", "variant", "cell_members", "cell_order[-]", "cell_l2[-]",
                  "cell_max[-]", "step_members", "step_order[-]", "step_l2[-]", "step_max[-]", "l2[-]",
                  "max[-]"}};
   for (const ComparedMeasure& m : c.measures)
     for (const DiscretisationError& e : m.errors)
-      rows.push_back({m.measure.name, m.unit, cell(m.extremes.range()), c.runs[e.run].label,
-                      c.runs[e.run].variant, std::to_string(e.cells.members), cell(e.cells.order),
-                      cell(e.cells.l2), cell(e.cells.max), std::to_string(e.steps.members),
-                      cell(e.steps.order), cell(e.steps.l2), cell(e.steps.max), cell(e.l2()), cell(e.max())});
+      rows.push_back({m.measure.name, m.unit, cell(m.scale), c.runs[e.run].label, c.runs[e.run].variant,
+                      std::to_string(e.cells.members), cell(e.cells.order), cell(e.cells.l2),
+                      cell(e.cells.max), std::to_string(e.steps.members), cell(e.steps.order),
+                      cell(e.steps.l2), cell(e.steps.max), cell(e.l2()), cell(e.max())});
   return csv(rows);
 }
 
@@ -311,9 +310,11 @@ std::string compare_text(const Comparison& c) {
   text += "\n## Last values\n\n" + last_values_table(c);
   if (const std::string table = errors_table(c); !table.empty())
     text +=
-        "\n## Discretisation error\n\nOf the finest run of each variant, as shares of the range.\n\n" + table;
+        "\n## Discretisation error\n\nOf the finest run of each variant, as shares of the scale: the range "
+        "of the quantity, of a factor of safety its value.\n\n" +
+        table;
   if (const std::string table = differences_table(c); !table.empty())
-    text += "\n## Differences between variants\n\nShares of the range, over the time that both have.\n\n" +
+    text += "\n## Differences between variants\n\nShares of the scale, over the time that both have.\n\n" +
             table + "\n" + verdict_lines(c);
   return text;
 }

@@ -5,6 +5,7 @@
 
 #include "app/columns.hpp"
 #include "app/measured.hpp"
+#include "app/stability_measures.hpp"
 #include "app/tables.hpp"
 #include "core/error.hpp"
 #include "io/csv.hpp"
@@ -16,6 +17,7 @@ using coupling::Measure;
 using coupling::Stage;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kAnyCell = 0;
 constexpr double kConstant = 1e-9;  // range beside the magnitude below which a quantity does not change
 
 // Errors and noise of the computation, which every run has of its own: told for each, not compared.
@@ -32,13 +34,12 @@ const std::vector<std::string>& usual_columns() {
   return names;
 }
 
+// All but searches for equilibrium.
 std::vector<std::size_t> compared_stages(const coupling::Scene& scene) {
-  std::vector<std::size_t> list, all;
-  for (std::size_t i = 0; i < scene.stages.size(); ++i) {
-    all.push_back(i);
+  std::vector<std::size_t> list;
+  for (std::size_t i = 0; i < scene.stages.size(); ++i)
     if (scene.stages[i].mode != Stage::Mode::equilibrium) list.push_back(i);
-  }
-  return list.empty() ? all : list;
+  return list;
 }
 
 // What a run has measured: its tables, read once.
@@ -52,7 +53,7 @@ class Measured {
   }
 
   const CsvTable& history() const { return *history_; }
-  // The table that may hold a measure; null if the run has none.
+  // The table of histories that may hold a measure; null if the run has none.
   const CsvTable* table(const Measure& m) const {
     bool in_history = false;
     measure_column(m, in_history);
@@ -61,15 +62,19 @@ class Measured {
   std::string column(const Measure& m) const {
     bool in_history = false;
     const std::string name = measure_column(m, in_history);
+    if (m.kind == Measure::Kind::stability) return "factor[-]";
     const CsvTable* t = table(m);
     return t ? find_column(t->columns(), name) : std::string();
   }
   // Empty if the run has no such column.
   Trace trace(const Measure& m) const {
     Trace trace;
+    if (m.kind == Measure::Kind::stability) return factor_of_safety(m);
     if (column(m).empty()) return trace;
     const Curve all = measured_curve(m, *table(m));
-    for (const std::size_t s : compared_stages(run_->scene)) {
+    const std::vector<std::size_t> stages = compared_stages(run_->scene);
+    if (stages.empty() && !all.x.empty()) return {{{0.0}, {all.value.back()}}};  // the equilibrium found
+    for (const std::size_t s : stages) {
       if (s >= run_->stages.size()) break;
       const RunRecord::Stage& stage = run_->stages[s];
       trace.push_back(part(all, stage.start, stage.start + stage.time));
@@ -77,7 +82,35 @@ class Measured {
     return trace;
   }
 
+  // All it has been, also where only its end is compared.
+  Extremes extremes(const Measure& m) const {
+    Extremes e;
+    const Trace compared = trace(m);
+    extend(e, compared);
+    if (compared_stages(run_->scene).empty() && table(m) && !column(m).empty())
+      extend(e, {measured_curve(m, *table(m))});
+    return e;
+  }
+  double last(const Measure& m) const {
+    if (m.kind == Measure::Kind::stability) {
+      const Trace found = factor_of_safety(m);
+      return found.empty() ? kNone : found.front().value.front();
+    }
+    const std::string name = column(m);
+    return name.empty() || table(m)->rows() == 0 ? kNone : table(m)->column(name).back();
+  }
+
  private:
+  // One number, whose time in the run does not matter.
+  Trace factor_of_safety(const Measure& m) const {
+    const RunFolder folder(run_->folder, RunFolder::Mode::read);
+    std::error_code failure;
+    if (!std::filesystem::exists(StabilityMeasures::file(folder, m), failure)) return {};
+    const Curve found = read_measure(m, folder, 0, run_->time);
+    if (found.value.empty() || !std::isfinite(found.value.back())) return {};
+    return {{{0.0}, {found.value.back()}}};
+  }
+
   const RunRecord* run_;
   std::optional<CsvTable> history_, probes_;
 };
@@ -126,11 +159,11 @@ class Families {
   Families(const Comparison& c, const std::vector<Trace>& traces) : c_(c), traces_(traces) {}
 
   // The run of the variant with the smallest step in this cell, or in its smallest one.
-  std::optional<std::size_t> finest(const std::string& variant, std::optional<double> cell = {}) const {
+  std::optional<std::size_t> finest(const std::string& variant, double cell = kAnyCell) const {
     std::optional<std::size_t> best;
     for (std::size_t i = 0; i < c_.runs.size(); ++i) {
       const ComparedRun& r = c_.runs[i];
-      if (r.variant != variant || !counts(r, traces_[i]) || (cell && r.cell() != *cell)) continue;
+      if (r.variant != variant || !counts(r, traces_[i]) || (cell != kAnyCell && r.cell() != cell)) continue;
       if (!best || r.cell() < c_.runs[*best].cell() ||
           (r.cell() == c_.runs[*best].cell() && r.step() < c_.runs[*best].step()))
         best = i;
@@ -190,8 +223,8 @@ class Families {
   const std::vector<Trace>& traces_;
 };
 
-void scale(FamilyError& e, double range) {
-  e.l2 /= range, e.max /= range;
+void divide(FamilyError& e, double whole) {
+  e.l2 /= whole, e.max /= whole;
 }
 
 Verdict verdict(const VariantDifference& d) {
@@ -200,17 +233,22 @@ Verdict verdict(const VariantDifference& d) {
   return d.difference.max > d.error_max ? Verdict::at_times : Verdict::alike;
 }
 
-void compare_measure(const Comparison& c, const std::vector<Trace>& traces, ComparedMeasure& m) {
+void compare_measure(const Comparison& c, const std::vector<Trace>& traces,
+                     const std::vector<std::optional<Measured>>& measured, ComparedMeasure& m) {
   const Families families(c, traces);
   double magnitude = 0;
   for (const std::string& v : c.variants)
-    if (const auto run = families.finest(v)) extend(m.extremes, traces[*run]);
+    if (const auto run = families.finest(v)) {
+      const Extremes e = measured[*run]->extremes(m.measure);
+      m.extremes.low = std::min(m.extremes.low, e.low), m.extremes.high = std::max(m.extremes.high, e.high);
+    }
   magnitude = std::max(std::abs(m.extremes.low), std::abs(m.extremes.high));
-  const double range = m.extremes.range();
-  if (!(range > kConstant * magnitude)) return;
+  m.scale = m.measure.kind == Measure::Kind::stability ? magnitude : m.extremes.range();
+  if (!(m.scale > kConstant * magnitude)) return;
+  const double whole = m.scale;
   const auto error_of = [&](std::size_t run) {
     DiscretisationError e = families.error(run);
-    scale(e.cells, range), scale(e.steps, range);
+    divide(e.cells, whole), divide(e.steps, whole);
     return e;
   };
   for (const std::string& v : c.variants)
@@ -218,13 +256,13 @@ void compare_measure(const Comparison& c, const std::vector<Trace>& traces, Comp
   for (std::size_t i = 0; i < c.variants.size(); ++i)
     for (std::size_t j = i + 1; j < c.variants.size(); ++j) {
       const std::vector<double> cells = families.common_cells(c.variants[i], c.variants[j]);
-      const std::optional<double> cell = cells.empty() ? std::nullopt : std::optional(cells.back());
+      const double cell = cells.empty() ? kAnyCell : cells.back();
       const auto first = families.finest(c.variants[i], cell), second = families.finest(c.variants[j], cell);
       if (!first || !second) continue;
       VariantDifference d;
       d.first = *first, d.second = *second;
       d.difference = difference(traces[*first], traces[*second]);
-      d.difference.l2 /= range, d.difference.max /= range;
+      d.difference.l2 /= whole, d.difference.max /= whole;
       const DiscretisationError a = error_of(*first), b = error_of(*second);
       d.error_l2 = a.known() && b.known() ? a.l2() + b.l2() : kNone;
       d.error_max = a.known() && b.known() ? a.max() + b.max() : kNone;
@@ -232,8 +270,9 @@ void compare_measure(const Comparison& c, const std::vector<Trace>& traces, Comp
       d.by_cell = cells;
       for (const double h : cells)
         d.l2_by_cell.push_back(
-            difference(traces[*families.finest(c.variants[i], h)], traces[*families.finest(c.variants[j], h)]).l2 /
-            range);
+            difference(traces[*families.finest(c.variants[i], h)], traces[*families.finest(c.variants[j], h)])
+                .l2 /
+            whole);
       m.differences.push_back(d);
     }
 }
@@ -274,8 +313,8 @@ void compare_runs(Comparison& c) {
     measured.emplace_back();
     if (!r.has_results()) continue;
     measured.back().emplace(r.run);
-    const std::size_t first = compared_stages(r.run.scene).front();
-    if (first < r.run.stages.size()) r.start = r.run.stages[first].start;
+    const std::vector<std::size_t> stages = compared_stages(r.run.scene);
+    if (!stages.empty() && stages.front() < r.run.stages.size()) r.start = r.run.stages[stages.front()].start;
   }
   c.measures = candidates(c);
   for (ComparedMeasure& m : c.measures) {
@@ -283,12 +322,10 @@ void compare_runs(Comparison& c) {
     for (const auto& run : measured) {
       traces.push_back(run ? run->trace(m.measure) : Trace());
       const std::string column = run ? run->column(m.measure) : std::string();
-      m.last.push_back(kNone);
-      if (column.empty()) continue;
-      if (m.unit.empty()) m.unit = unit_of(column);
-      if (const CsvTable* t = run->table(m.measure); t->rows() > 0) m.last.back() = t->column(column).back();
+      m.last.push_back(run ? run->last(m.measure) : kNone);
+      if (m.unit.empty() && !column.empty()) m.unit = unit_of(column);
     }
-    compare_measure(c, traces, m);
+    compare_measure(c, traces, measured, m);
   }
   // A column that nobody asked for and that says nothing.
   std::erase_if(c.measures, [](const ComparedMeasure& m) { return !m.asked && m.errors.empty(); });

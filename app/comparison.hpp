@@ -4,7 +4,9 @@
 // Compared is what has a history: measures of particles, cells and bodies, those of the history but for
 // errors and noise, and some columns of the history without being asked. Times count from the start of the
 // first stage that is not a search for equilibrium, whose pseudo-time means nothing; such stages are left out
-// everywhere. Differences are given as shares of the range of the quantity in the finest runs.
+// everywhere, and of a case without others what it ends with is compared. Differences are given as shares of
+// the range of the quantity in the finest runs; those of a factor of safety, one number, as shares of the
+// largest.
 #pragma once
 
 #include <limits>
@@ -28,7 +30,7 @@ struct ComparedRun {
   bool has_results() const { return !run.folder.empty(); }
 };
 
-// Shares of the range. `run`: whose error it is, the finest of the variant.
+// Shares of the scale. `run`: whose error it is, the finest of the variant.
 struct DiscretisationError {
   std::size_t run = 0;
   FamilyError cells, steps;
@@ -47,7 +49,7 @@ const char* verdict_text(Verdict verdict);
 
 struct VariantDifference {
   std::size_t first = 0, second = 0;   // runs
-  CurveDifference difference;          // shares of the range
+  CurveDifference difference;          // shares of the scale
   double error_l2 = 0, error_max = 0;  // sum of both discretisation errors, NaN: not known
   // The same in every size of cells that both have, from coarse to fine: a difference of the formulations
   // stays as the cells shrink, even where each has a larger error that both share.
@@ -60,6 +62,7 @@ struct ComparedMeasure {
   std::string unit;
   bool asked = true;         // a [[measure]] of the case
   Extremes extremes;         // of the finest runs
+  double scale = 0;          // of differences: the range; of a single number its magnitude
   std::vector<double> last;  // of every run; NaN: it has none
   // Of one variant each, and of pairs of them; empty where the quantity is constant.
   std::vector<DiscretisationError> errors;

@@ -147,7 +147,7 @@ def panels_with_legend(comparison, panels, picture):
 def draw_measures(comparison, output):
     panels = []
     for measure in comparison.json["measures"]:
-        if not measure["asked"]:
+        if not measure["asked"] or measure["kind"] == "stability":
             continue
         curves = []
         for run in comparison.runs:
@@ -271,7 +271,7 @@ def draw_differences(comparison, output):
         axis.set_title(f"{style.letter(number)}  {first} and {second}", loc="left")
         axis.set_xlim(left=0)
         finish_panel(axis)
-    axes.flat[-1].set_xlabel("difference, root mean square over time [% of the range]")
+    axes.flat[-1].set_xlabel("difference, root mean square over time [% of the scale]")
     handles = [Line2D([], [], color=style.CYCLE[1], marker="o", linestyle="", markersize=5, label="beyond the error"),
                Line2D([], [], color=style.CYCLE[0], marker="o", linestyle="", markersize=5, label="within"),
                Line2D([], [], color=style.CYCLE[0], marker="o", linestyle="", markersize=5, markerfacecolor="white",

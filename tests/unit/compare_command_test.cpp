@@ -186,7 +186,7 @@ TEST_CASE("two formulations with two sizes of cells") {
   const Trace x = curve(a, "water_outflow[m3]"), y = curve(b, "water_outflow[m3]");
   app::Extremes extremes;
   app::extend(extremes, x);
-  CHECK(outflow.at("range").get<double>() == doctest::Approx(extremes.range()));
+  CHECK(outflow.at("scale").get<double>() == doctest::Approx(extremes.range()));
   CHECK(outflow.at("errors").at(0).at("cell").at("l2").get<double>() ==
         doctest::Approx(app::difference(x, y).l2 / extremes.range()));
   // What only one of them has is not compared; what both have is.
