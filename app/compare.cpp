@@ -1,9 +1,11 @@
 #include "app/compare.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <ostream>
 
 #include "app/commands.hpp"
+#include "app/compare_folders.hpp"
 #include "app/compare_plan.hpp"
 #include "app/compare_report.hpp"
 #include "app/comparison.hpp"
@@ -19,6 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Action = PlannedRun::Action;
+
+constexpr std::size_t kAnyNumber = 100000;
 
 void require_place_for_comparison(const fs::path& folder) {
   std::error_code failure;
@@ -106,16 +110,51 @@ int compare_case(const Arguments& a, std::ostream& out, std::ostream& err) {
   return finish(c, folder, code, out);
 }
 
+// Whether there are two that differ in it.
+template <class Size>
+bool differs(const std::vector<ComparedRun>& runs, const Size& size) {
+  return std::any_of(runs.begin(), runs.end(),
+                     [&](const ComparedRun& r) { return size(r) != size(runs.front()); });
+}
+
+int compare_folders(const Arguments& a, std::ostream& out) {
+  for (const char* option :
+       {"--formulation", "--variant", "--cell", "--courant", "--step", "--set", "--threads", "--overwrite"})
+    if (a.has(option))
+      throw InputError(std::string("polder compare: ") + option +
+                       ": runs made earlier are taken as they are; allowed: with a case file");
+  const fs::path folder = a.value("--output").value_or("results/compare");
+  require_place_for_comparison(folder);
+  Comparison c;
+  c.runs = read_runs(a.words);
+  c.title = c.runs.front().run.scene.title;
+  const bool cells = differs(c.runs, [](const ComparedRun&r) { return r.cell(); }),
+             steps = differs(c.runs, [](const ComparedRun&r) { return r.step(); });
+  for (ComparedRun& r : c.runs) r.label = run_label(r.variant, r.run.scene, cells, steps);
+  make_folder(folder);
+  return finish(c, folder, ExitCode::done, out);
+}
+
+int compare(const Arguments& a, std::ostream& out, std::ostream& err) {
+  std::error_code failure;
+  if (fs::is_directory(a.words.front(), failure)) return compare_folders(a, out);
+  if (a.words.size() > 1)
+    throw InputError("polder compare: " + a.words.front() +
+                     ": is no folder; allowed: one case file, or the folders of runs");
+  return compare_case(a, out, err);
+}
+
 }  // namespace
 
 Command compare_command() {
   return {
       "compare",
-      "CASE",
+      "CASE|DIR...",
       1,
-      1,
+      kAnyNumber,
       "Run a case with several formulations, cells or steps, and tell where they differ by more than their "
-      "discretisation error. Runs that are complete in the folder already are taken as they are.",
+      "discretisation error. Runs that are complete in the folder already are taken as they are. DIR...: "
+      "compare runs made earlier instead; a folder of runs stands for all in it.",
       {{"--formulation", "", "NAME", "A formulation to compare; default: the case's own.", true},
        {"--variant", "", "NAME:KEY=VALUE,...",
         "The case with these settings, under this name, beside the formulations.", true},
@@ -123,13 +162,15 @@ Command compare_command() {
        {"--courant", "", "C", "A step as a share of its limit; several tell the error of the steps.", true},
        {"--step", "", "DT", "A fixed step, instead of --courant.", true},
        {"--output", "-o", "DIR",
-        "Folder of the comparison, with a folder for each run; default results/NAME-compare.", false},
+        "Folder of the comparison, with a folder for each run; default results/NAME-compare, of runs made "
+        "earlier results/compare.",
+        false},
        {"--set", "", "KEY=VALUE",
         "Replace a key of the case in all runs, e.g. --set stage.1.duration=2; KEY= removes it.", true},
        {"--threads", "", "N", "Number of threads; the results do not depend on it.", false},
        {"--quiet", "", "", "Say nothing but the tables and errors.", false},
        {"--overwrite", "", "", "Run all again and replace results that are in the folder.", false}},
-      compare_case};
+      compare};
 }
 
 }  // namespace polder::app

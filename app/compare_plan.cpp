@@ -1,11 +1,11 @@
 #include "app/compare_plan.hpp"
 
 #include <algorithm>
-#include <map>
 #include <optional>
 
 #include "app/case.hpp"
 #include "app/check_scene.hpp"
+#include "app/comparison.hpp"
 #include "app/document.hpp"
 #include "app/run.hpp"
 #include "app/run_record.hpp"
@@ -75,19 +75,10 @@ std::vector<std::optional<std::string>> values(const Arguments& a, const std::st
   return list;
 }
 
-std::string step_text(const Scene& s) {
-  return s.numerics.time_step ? "step " + format_number(*s.numerics.time_step) + " s"
-                              : "courant " + format_number(s.numerics.courant);
-}
-
 std::string folder_name(const std::string& variant, const Scene& s) {
   return variant + "_cell" + format_number(s.grid.cell) +
          (s.numerics.time_step ? "_step" + format_number(*s.numerics.time_step)
                                : "_courant" + format_number(s.numerics.courant));
-}
-
-double step_size(const Scene& s) {
-  return s.numerics.time_step.value_or(s.numerics.courant);
 }
 
 // What is wrong, and with which runs. What is wrong with all of them is the case's own mistake.
@@ -161,14 +152,6 @@ Scene scene_of(const std::string& file, const std::vector<std::string>& settings
   return scene;
 }
 
-void give_labels(std::vector<PlannedRun>& runs, bool cells, bool steps) {
-  for (PlannedRun& r : runs) {
-    r.label = r.variant;
-    if (cells) r.label += ", cell " + format_number(r.scene.grid.cell) + " m";
-    if (steps) r.label += ", " + step_text(r.scene);
-  }
-}
-
 }  // namespace
 
 ComparePlan plan_comparison(const Arguments& a, const fs::path& folder, bool overwrite) {
@@ -207,10 +190,8 @@ ComparePlan plan_comparison(const Arguments& a, const fs::path& folder, bool ove
             for (const Diagnostic& d : e.diagnostics()) wrong.add(d, label);
           }
         }
-    std::stable_sort(family.begin(), family.end(), [](const PlannedRun& x, const PlannedRun& y) {
-      return x.scene.grid.cell != y.scene.grid.cell ? x.scene.grid.cell > y.scene.grid.cell
-                                                    : step_size(x.scene) > step_size(y.scene);
-    });
+    std::stable_sort(family.begin(), family.end(),
+                     [](const PlannedRun& x, const PlannedRun& y) { return is_coarser(x.scene, y.scene); });
     std::move(family.begin(), family.end(), std::back_inserter(plan.runs));
   }
   if (!wrong.empty()) throw InputError(wrong.list(count));
@@ -226,8 +207,9 @@ ComparePlan plan_comparison(const Arguments& a, const fs::path& folder, bool ove
         "without them");
   for (const Diagnostic& d : noted.list(count)) plan.notes.push_back(d.text());
 
-  give_labels(plan.runs, a.has("--cell"), a.has("--courant") || a.has("--step"));
+  const bool steps_differ = a.has("--courant") || a.has("--step");
   for (PlannedRun& run : plan.runs) {
+    run.label = run_label(run.variant, run.scene, a.has("--cell"), steps_differ);
     run.folder = folder / folder_name(run.variant, run.scene);
     const auto same = [&](const PlannedRun& r) { return &r != &run && r.folder == run.folder; };
     if (std::any_of(plan.runs.begin(), plan.runs.end(), same))

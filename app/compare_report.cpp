@@ -66,6 +66,11 @@ std::string remarks(const Comparison& c) {
     several = several || (r.has_results() && c.runs.front().has_results() &&
                           r.run.program != c.runs.front().run.program);
   }
+  if (c.case_file.empty()) {  // of runs made earlier
+    text += "\n";
+    for (std::size_t i = 0; i < c.runs.size(); ++i)
+      text += "- " + row_name(c, i) + ": " + c.runs[i].run.folder.string() + "\n";
+  }
   if (restarted) text += "\n\\* restarted: wall times are those of the last call.\n";
   if (several) {
     text += "\nNot all runs were made by the same program:\n\n";

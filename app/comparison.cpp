@@ -7,7 +7,7 @@
 #include "app/measured.hpp"
 #include "app/stability_measures.hpp"
 #include "app/tables.hpp"
-#include "core/error.hpp"
+#include "core/units.hpp"
 #include "io/csv.hpp"
 
 namespace polder::app {
@@ -303,6 +303,21 @@ const char* verdict_text(Verdict v) {
       break;
   }
   return "not known";
+}
+
+bool is_coarser(const coupling::Scene& a, const coupling::Scene& b) {
+  if (a.grid.cell != b.grid.cell) return a.grid.cell > b.grid.cell;
+  return a.numerics.time_step.value_or(a.numerics.courant) >
+         b.numerics.time_step.value_or(b.numerics.courant);
+}
+
+std::string run_label(const std::string& variant, const coupling::Scene& s, bool cells, bool steps) {
+  std::string label = variant;
+  if (cells) label += ", cell " + format_number(s.grid.cell) + " m";
+  if (steps)
+    label += s.numerics.time_step ? ", step " + format_number(*s.numerics.time_step) + " s"
+                                  : ", courant " + format_number(s.numerics.courant);
+  return label;
 }
 
 void compare_runs(Comparison& c) {

@@ -76,6 +76,12 @@ struct Comparison {
   std::vector<ComparedMeasure> measures;
 };
 
+// The order of a family: by cells, then by steps.
+bool is_coarser(const coupling::Scene& a, const coupling::Scene& b);
+
+// "one-layer, cell 0.1 m, courant 0.5": with cells or steps where these tell runs apart.
+std::string run_label(const std::string& variant, const coupling::Scene& scene, bool cells, bool steps);
+
 // Fills in starts, variants and measures.
 void compare_runs(Comparison& comparison);
 

@@ -373,3 +373,62 @@ TEST_CASE("bad input starts nothing") {
   CHECK(o.code == 2);
   CHECK(o.err.find("holds the results of a run") != std::string::npos);
 }
+
+TEST_CASE("runs made earlier") {
+  const Scratch scratch("compare_test");
+  const fs::path family = scratch.path / "family";
+  REQUIRE(compare(family, kColumn,
+                  {"--formulation", "one-layer", "--formulation", "dry", "--cell", "0.2", "--cell", "0.1"})
+              .code == 0);
+  const auto run = [&](const std::string& name, const std::vector<std::string>& settings) {
+    std::vector<std::string> words{"run", kColumn, "-o", (scratch.path / name).string(), "--quiet"};
+    for (const std::string& s : settings) words.insert(words.end(), {"--set", s});
+    REQUIRE(polder_program(words) == 0);
+    return (scratch.path / name).string();
+  };
+  const auto compare_runs = [&](const std::string& out, const std::vector<std::string>& folders) {
+    std::vector<std::string> words{"compare", "-o", (scratch.path / out).string()};
+    words.insert(words.end(), folders.begin(), folders.end());
+    Outcome o{};
+    o.code = polder_program(words, &o.err);
+    if (const fs::path file = scratch.path / out / "compare.json"; fs::exists(file))
+      o.json = nlohmann::json::parse(text_of(file));
+    return o;
+  };
+  // The folder of a comparison: the same again.
+  const Outcome again = compare_runs("again", {family.string()});
+  REQUIRE_MESSAGE(again.code == 0, again.err);
+  const auto root = nlohmann::json::parse(text_of(family / "compare.json"));
+  CHECK(measure(again.json, "top").at("differences")[0].at("l2") ==
+        measure(root, "top").at("differences")[0].at("l2"));
+  CHECK(measure(again.json, "top").at("errors")[0].at("known") == true);
+  CHECK(again.json.at("runs")[0].at("label") == "dry, cell 0.2 m");  // in the order of the folders
+  CHECK(fs::exists(scratch.path / "again" / again.json.at("runs")[0].at("folder").get<std::string>()));
+
+  // Runs with more measures and other output belong to the family of the same scene; other soil does not.
+  const std::string fine = run("fine", {"grid.cell=0.05", "output.every=0"}),
+                    same = run("one-layer-again", {}), soft = run("soft", {"material.sand.young=5e6"});
+  const Outcome o = compare_runs("mixed", {(family / "one-layer_cell0.2_courant0.5").string(), fine + "/",
+                                           (family / "one-layer_cell0.1_courant0.5").string(), soft, same});
+  REQUIRE_MESSAGE(o.code == 0, o.err);
+  REQUIRE(o.json.at("runs").size() == 5);
+  CHECK(measure(o.json, "top").at("errors")[0].at("cell").at("members") == 3);
+  // A second run of the same size is a side of its own, called after its folder.
+  CHECK(o.json.at("variants") == nlohmann::json::array({"one-layer", "soft", "one-layer-again"}));
+  CHECK(measure(o.json, "top").at("differences")[1].at("l2") == 0);
+
+  const auto refuse = [&](const std::vector<std::string>& words, const std::string& says) {
+    const Outcome refused = compare_runs("refused", words);
+    CAPTURE(refused.err);
+    CHECK(refused.code == 2);
+    CHECK(refused.err.find(says) != std::string::npos);
+    CHECK_FALSE(fs::exists(scratch.path / "refused"));
+  };
+  refuse({same}, "one run is nothing to compare");
+  refuse({same, same + "/../one-layer-again"}, "is given twice");
+  refuse({same, (scratch.path / "nowhere").string()}, "no such folder");
+  refuse({kColumn, same}, "is no folder");
+  refuse({same, soft, "--cell", "0.1"}, "--cell: runs made earlier are taken as they are");
+  fs::create_directories(scratch.path / "empty");
+  refuse({same, (scratch.path / "empty").string()}, "holds no run");
+}
