@@ -65,7 +65,8 @@ Json run_json(const Comparison& c, std::size_t i, const std::filesystem::path& f
   roughness["largest"] = run.roughness_largest;
   j["pressure_roughness"] = std::move(roughness);
   Json measures = Json::object();
-  for (const ComparedMeasure& m : c.measures) measures[m.measure.name] = m.last[i];
+  for (const ComparedMeasure& m : c.measures)
+    if (!m.measure.is_profile()) measures[m.measure.name] = m.last[i];
   j["measures"] = std::move(measures);
   Json expectations = Json::array();
   for (const ExpectationResult& e : run.expectations) expectations.push_back(expectation_json(e));
@@ -112,6 +113,7 @@ Json measure_json(const ComparedMeasure& m) {
   j["quantity"] = m.measure.quantity;
   j["unit"] = m.unit;
   j["asked"] = m.asked;
+  if (m.measure.is_profile()) j["times"] = Json::array_of(m.times);
   j["scale"] = m.scale;
   Json errors = Json::array();
   for (const DiscretisationError& e : m.errors) {

@@ -1,5 +1,6 @@
 #include "app/compare_report.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/digits.hpp"
@@ -104,6 +105,7 @@ std::string last_values_table(const Comparison& c) {
   TextRows rows{{"quantity", "unit"}};
   for (std::size_t i = 0; i < c.runs.size(); ++i) rows.front().push_back(index(i));
   for (const ComparedMeasure& m : c.measures) {
+    if (m.measure.is_profile()) continue;
     rows.push_back({m.measure.name, m.unit});
     for (const double v : m.last) rows.back().push_back(number(v, 5));
   }
@@ -136,8 +138,9 @@ std::string differences_table(const Comparison& c) {
 std::string family_text(const FamilyError& e) {
   if (!e.known()) return "not known";
   if (!e.converges) return percent(e.l2) + ", does not converge";
-  return percent(e.l2) +
-         (e.members > 2 && !std::isnan(e.order) ? ", order " + digits(e.order, 2) : ", order 1 assumed");
+  if (e.members < 3 || std::isnan(e.order)) return percent(e.l2) + ", order 1 assumed";
+  return percent(e.l2) + (e.order < kMostOrderSought ? ", order " : ", order above ") +
+         digits(std::min(e.order, kMostOrderSought), 2);
 }
 
 std::string errors_table(const Comparison& c) {
@@ -230,7 +233,8 @@ std::string runs_csv(const Comparison& c) {
                  "roughness_largest[Pa]",
                  "expectations",
                  "expectations_met"}};
-  for (const ComparedMeasure& m : c.measures) rows.front().push_back(m.measure.name + "[" + m.unit + "]");
+  for (const ComparedMeasure& m : c.measures)
+    if (!m.measure.is_profile()) rows.front().push_back(m.measure.name + "[" + m.unit + "]");
   for (std::size_t i = 0; i < c.runs.size(); ++i) {
     const ComparedRun& r = c.runs[i];
     const RunRecord& run = r.run;
@@ -275,7 +279,8 @@ std::string runs_csv(const Comparison& c) {
                     cell(run.roughness_largest),
                     whole(static_cast<std::int64_t>(run.expectations.size())),
                     whole(met)});
-    for (const ComparedMeasure& m : c.measures) rows.back().push_back(cell(m.last[i]));
+    for (const ComparedMeasure& m : c.measures)
+      if (!m.measure.is_profile()) rows.back().push_back(cell(m.last[i]));
   }
   return csv(rows);
 }

@@ -3,18 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/columns.hpp"
-#include "app/measured.hpp"
-#include "app/stability_measures.hpp"
-#include "app/tables.hpp"
+#include "app/run_traces.hpp"
 #include "core/units.hpp"
-#include "io/csv.hpp"
 
 namespace polder::app {
 namespace {
 
 using coupling::Measure;
-using coupling::Stage;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kAnyCell = 0;
@@ -22,9 +17,9 @@ constexpr double kConstant = 1e-9;  // range beside the magnitude below which a 
 
 // Errors and noise of the computation, which every run has of its own: told for each, not compared.
 bool is_audit(const std::string& quantity) {
-  for (const char* word : {"_error", "roughness", "transfer_loss", "unbalanced", "relaxation", "dt", "step"})
+  for (const char* word : {"_error", "roughness", "transfer_loss", "unbalanced", "relaxation"})
     if (quantity.find(word) != std::string::npos) return true;
-  return false;
+  return quantity == "dt" || quantity == "step" || quantity == "stage";
 }
 
 // Columns of the history that tell what happened, whether the case asks for them or not.
@@ -33,87 +28,6 @@ const std::vector<std::string>& usual_columns() {
       "runout", "height", "kinetic_energy", "max_speed", "max_pore_pressure", "water_outflow"};
   return names;
 }
-
-// All but searches for equilibrium.
-std::vector<std::size_t> compared_stages(const coupling::Scene& scene) {
-  std::vector<std::size_t> list;
-  for (std::size_t i = 0; i < scene.stages.size(); ++i)
-    if (scene.stages[i].mode != Stage::Mode::equilibrium) list.push_back(i);
-  return list;
-}
-
-// What a run has measured: its tables, read once.
-class Measured {
- public:
-  explicit Measured(const RunRecord& run) : run_(&run) {
-    const RunFolder folder(run.folder, RunFolder::Mode::read);
-    history_.emplace(folder.history(), history_words());
-    std::error_code failure;
-    if (std::filesystem::exists(folder.probes(), failure)) probes_.emplace(folder.probes());
-  }
-
-  const CsvTable& history() const { return *history_; }
-  // The table of histories that may hold a measure; null if the run has none.
-  const CsvTable* table(const Measure& m) const {
-    bool in_history = false;
-    measure_column(m, in_history);
-    return in_history ? &*history_ : probes_ ? &*probes_ : nullptr;
-  }
-  std::string column(const Measure& m) const {
-    bool in_history = false;
-    const std::string name = measure_column(m, in_history);
-    if (m.kind == Measure::Kind::stability) return "factor[-]";
-    const CsvTable* t = table(m);
-    return t ? find_column(t->columns(), name) : std::string();
-  }
-  // Empty if the run has no such column.
-  Trace trace(const Measure& m) const {
-    Trace trace;
-    if (m.kind == Measure::Kind::stability) return factor_of_safety(m);
-    if (column(m).empty()) return trace;
-    const Curve all = measured_curve(m, *table(m));
-    const std::vector<std::size_t> stages = compared_stages(run_->scene);
-    if (stages.empty() && !all.x.empty()) return {{{0.0}, {all.value.back()}}};  // the equilibrium found
-    for (const std::size_t s : stages) {
-      if (s >= run_->stages.size()) break;
-      const RunRecord::Stage& stage = run_->stages[s];
-      trace.push_back(part(all, stage.start, stage.start + stage.time));
-    }
-    return trace;
-  }
-
-  // All it has been, also where only its end is compared.
-  Extremes extremes(const Measure& m) const {
-    Extremes e;
-    const Trace compared = trace(m);
-    extend(e, compared);
-    if (compared_stages(run_->scene).empty() && table(m) && !column(m).empty())
-      extend(e, {measured_curve(m, *table(m))});
-    return e;
-  }
-  double last(const Measure& m) const {
-    if (m.kind == Measure::Kind::stability) {
-      const Trace found = factor_of_safety(m);
-      return found.empty() ? kNone : found.front().value.front();
-    }
-    const std::string name = column(m);
-    return name.empty() || table(m)->rows() == 0 ? kNone : table(m)->column(name).back();
-  }
-
- private:
-  // One number, whose time in the run does not matter.
-  Trace factor_of_safety(const Measure& m) const {
-    const RunFolder folder(run_->folder, RunFolder::Mode::read);
-    std::error_code failure;
-    if (!std::filesystem::exists(StabilityMeasures::file(folder, m), failure)) return {};
-    const Curve found = read_measure(m, folder, 0, run_->time);
-    if (found.value.empty() || !std::isfinite(found.value.back())) return {};
-    return {{{0.0}, {found.value.back()}}};
-  }
-
-  const RunRecord* run_;
-  std::optional<CsvTable> history_, probes_;
-};
 
 bool same_quantity(const Measure& a, const Measure& b) {
   return a.name == b.name && a.kind == b.kind && a.quantity == b.quantity;
@@ -129,7 +43,7 @@ std::vector<ComparedMeasure> candidates(const Comparison& c) {
   };
   for (const ComparedRun& r : c.runs)
     for (const Measure& m : r.run.scene.measures)
-      if (!m.is_profile() && !(m.kind == Measure::Kind::history && is_audit(m.quantity))) add(m, true);
+      if (m.kind != Measure::Kind::history || !is_audit(m.quantity)) add(m, true);
   for (const std::string& name : usual_columns()) {
     const bool asked = std::any_of(list.begin(), list.end(), [&](const ComparedMeasure& m) {
       return m.measure.kind == Measure::Kind::history && m.measure.quantity == name;
@@ -139,11 +53,6 @@ std::vector<ComparedMeasure> candidates(const Comparison& c) {
     if (!asked) add(m, false);
   }
   return list;
-}
-
-std::string unit_of(const std::string& column) {
-  const std::size_t open = column.find('[');
-  return open == std::string::npos ? "" : column.substr(open + 1, column.size() - open - 2);
 }
 
 // ---- families
@@ -234,12 +143,12 @@ Verdict verdict(const VariantDifference& d) {
 }
 
 void compare_measure(const Comparison& c, const std::vector<Trace>& traces,
-                     const std::vector<std::optional<Measured>>& measured, ComparedMeasure& m) {
+                     const std::vector<std::optional<RunTraces>>& measured, ComparedMeasure& m) {
   const Families families(c, traces);
   double magnitude = 0;
   for (const std::string& v : c.variants)
     if (const auto run = families.finest(v)) {
-      const Extremes e = measured[*run]->extremes(m.measure);
+      const Extremes e = measured[*run]->extremes(m.measure, m.times);
       m.extremes.low = std::min(m.extremes.low, e.low), m.extremes.high = std::max(m.extremes.high, e.high);
     }
   magnitude = std::max(std::abs(m.extremes.low), std::abs(m.extremes.high));
@@ -262,6 +171,7 @@ void compare_measure(const Comparison& c, const std::vector<Trace>& traces,
       VariantDifference d;
       d.first = *first, d.second = *second;
       d.difference = difference(traces[*first], traces[*second]);
+      if (m.measure.is_profile()) d.difference.max_at = m.times.at(d.difference.max_curve);
       d.difference.l2 /= whole, d.difference.max /= whole;
       const DiscretisationError a = error_of(*first), b = error_of(*second);
       d.error_l2 = a.known() && b.known() ? a.l2() + b.l2() : kNone;
@@ -321,24 +231,26 @@ std::string run_label(const std::string& variant, const coupling::Scene& s, bool
 }
 
 void compare_runs(Comparison& c) {
-  std::vector<std::optional<Measured>> measured;
+  std::vector<std::optional<RunTraces>> measured;
   for (ComparedRun& r : c.runs) {
     if (std::find(c.variants.begin(), c.variants.end(), r.variant) == c.variants.end())
       c.variants.push_back(r.variant);
     measured.emplace_back();
     if (!r.has_results()) continue;
     measured.back().emplace(r.run);
-    const std::vector<std::size_t> stages = compared_stages(r.run.scene);
-    if (!stages.empty() && stages.front() < r.run.stages.size()) r.start = r.run.stages[stages.front()].start;
+    r.start = measured.back()->start();
   }
   c.measures = candidates(c);
   for (ComparedMeasure& m : c.measures) {
+    if (m.measure.is_profile())
+      for (const auto& run : measured)
+        if (run && run->profile_times(m.measure).size() > m.times.size())
+          m.times = run->profile_times(m.measure);
     std::vector<Trace> traces;
     for (const auto& run : measured) {
-      traces.push_back(run ? run->trace(m.measure) : Trace());
-      const std::string column = run ? run->column(m.measure) : std::string();
+      traces.push_back(run ? run->trace(m.measure, m.times) : Trace());
       m.last.push_back(run ? run->last(m.measure) : kNone);
-      if (m.unit.empty() && !column.empty()) m.unit = unit_of(column);
+      if (m.unit.empty() && run) m.unit = run->unit(m.measure);
     }
     compare_measure(c, traces, measured, m);
   }

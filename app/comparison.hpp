@@ -1,12 +1,9 @@
 // Runs of one case beside each other: what each measured, how far variants (formulations) differ, and how
 // much of that is the error of their cells and steps (curve_family.hpp).
 //
-// Compared is what has a history: measures of particles, cells and bodies, those of the history but for
-// errors and noise, and some columns of the history without being asked. Times count from the start of the
-// first stage that is not a search for equilibrium, whose pseudo-time means nothing; such stages are left out
-// everywhere, and of a case without others what it ends with is compared. Differences are given as shares of
-// the range of the quantity in the finest runs; those of a factor of safety, one number, as shares of the
-// largest.
+// Compared are all measures (run_traces.hpp) but errors and noise, and some columns of the history without
+// being asked. Differences are given as shares of the range of the quantity in the finest runs; those of a
+// factor of safety, one number, as shares of the largest.
 #pragma once
 
 #include <limits>
@@ -60,10 +57,11 @@ struct VariantDifference {
 struct ComparedMeasure {
   coupling::Measure measure;
   std::string unit;
-  bool asked = true;         // a [[measure]] of the case
-  Extremes extremes;         // of the finest runs
-  double scale = 0;          // of differences: the range; of a single number its magnitude
-  std::vector<double> last;  // of every run; NaN: it has none
+  std::vector<double> times;  // of a profile, since the start of the times compared [s]
+  bool asked = true;          // a [[measure]] of the case
+  Extremes extremes;          // of the finest runs
+  double scale = 0;           // of differences: the range; of a single number its magnitude
+  std::vector<double> last;   // of every run; NaN: it has none
   // Of one variant each, and of pairs of them; empty where the quantity is constant.
   std::vector<DiscretisationError> errors;
   std::vector<VariantDifference> differences;

@@ -10,10 +10,11 @@ constexpr double kLeastOrder = 0.5, kMostOrder = 2;
 
 struct Sums {
   double time = 0, square = 0, largest = -1, largest_at = 0;
+  std::size_t largest_in = 0;
 };
 
 // Integrates the square of the difference, which is linear between the points of both curves.
-void add(const Curve& a, const Curve& b, double offset, Sums& sums) {
+void add(const Curve& a, const Curve& b, double offset, std::size_t number, Sums& sums) {
   if (a.x.empty() || b.x.empty()) return;
   const double start = std::max(a.x.front(), b.x.front()), end = std::min(a.x.back(), b.x.back());
   std::vector<double> times;
@@ -25,7 +26,8 @@ void add(const Curve& a, const Curve& b, double offset, Sums& sums) {
   double before = 0;
   for (std::size_t i = 0; i < times.size(); ++i) {
     const double d = interpolate(a.x, a.value, times[i]) - interpolate(b.x, b.value, times[i]);
-    if (std::abs(d) > sums.largest) sums.largest = std::abs(d), sums.largest_at = offset + times[i];
+    if (std::abs(d) > sums.largest)
+      sums.largest = std::abs(d), sums.largest_at = offset + times[i], sums.largest_in = number;
     if (i > 0 && !std::isnan(before) && !std::isnan(d)) {
       const double dt = times[i] - times[i - 1];
       sums.time += dt;
@@ -41,12 +43,12 @@ CurveDifference difference(const Trace& a, const Trace& b) {
   Sums sums;
   double offset = 0;
   for (std::size_t s = 0; s < std::min(a.size(), b.size()); ++s) {
-    add(a[s], b[s], offset, sums);
+    add(a[s], b[s], offset, s, sums);
     if (!a[s].x.empty()) offset += a[s].x.back();
   }
   CurveDifference d;
   if (sums.largest < 0) return d;
-  d.max = sums.largest, d.max_at = sums.largest_at;
+  d.max = sums.largest, d.max_at = sums.largest_at, d.max_curve = sums.largest_in;
   d.l2 = sums.time > 0 ? std::sqrt(sums.square / sums.time) : sums.largest;
   return d;
 }
@@ -64,12 +66,12 @@ double observed_order(double coarse, double fine, double h3, double h2, double h
     return std::abs(p) < 1e-6 ? std::log(h3 / h2) / std::log(h2 / h1)
                               : (std::pow(h3 / h1, p) - std::pow(h2 / h1, p)) / (std::pow(h2 / h1, p) - 1);
   };
-  double low = -8, high = 8;  // orders beyond these are noise
+  double low = -kMostOrderSought, high = kMostOrderSought;
   for (int i = 0; i < 60; ++i) {
     const double p = 0.5 * (low + high);
     (ratio(p) < coarse / fine ? low : high) = p;
   }
-  return 0.5 * (low + high);
+  return high;
 }
 
 FamilyError family_error(std::span<const double> h, std::span<const Trace> traces) {

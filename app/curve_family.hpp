@@ -1,7 +1,7 @@
 // Differences between curves, and the discretisation error that a family of them tells.
 //
-// A trace is a measure over the stages of a run: one curve for each, times from its start. Two runs are
-// compared over the time that a stage has in both.
+// A trace is what a run has measured: a curve over time for each stage, from its start, or over a coordinate
+// for each of some times. Two runs are compared over what a curve has in both.
 //
 // Error of the finest of a family by Richardson's extrapolation (Richardson 1911; Roache 1994): with curves
 // f1, f2 of the two finest sizes h1 < h2, |f1 - f| = |f2 - f1| / ((h2 / h1)^p - 1). The order p is observed
@@ -23,7 +23,8 @@ using Trace = std::vector<Curve>;
 struct CurveDifference {
   double l2 = std::numeric_limits<double>::quiet_NaN();   // root of the mean square over the common time
   double max = std::numeric_limits<double>::quiet_NaN();  // largest magnitude
-  double max_at = 0;                                      // its time, since the start of the first stage [s]
+  double max_at = 0;  // where: as if the curves followed each other, since the start of the first [s]
+  std::size_t max_curve = 0;
 };
 
 // Both piecewise linear. Where one of them has no number (NaN) there is nothing to compare.
@@ -46,6 +47,9 @@ struct FamilyError {
 
 // Sizes (of cells or steps) from coarse to fine, and a trace for each.
 FamilyError family_error(std::span<const double> sizes, std::span<const Trace> traces);
+
+// Orders are sought between this and its negative; beyond them is noise.
+inline constexpr double kMostOrderSought = 8;
 
 // The order p for which differences fall as those between three sizes from coarse to fine; NaN where one of
 // the differences is 0.

@@ -2,7 +2,8 @@
 
 compare.json is read, and the folders of the runs it names. Colour tells the variant (the formulation), line style the size
 of cells and steps, the finest drawn solid. Times count from where the comparison begins, the end of the search for
-equilibrium. Fields side by side are in compare_fields.py.
+equilibrium. Fields side by side are in compare_fields.py, profiles in
+compare_profiles.py.
 """
 import os
 
@@ -12,11 +13,12 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 import figure_style as style
-from expectation_figures import measured_over_time
+from expectation_figures import measured_over_time, reference_curve, stage_start
 from history_figures import finish_panel, label_axis, readable, split_unit
 from results import Results, read_json
 
 LINES = ["-", "--", ":", "-.", (0, (6, 1, 1, 1, 1, 1)), (0, (1, 4))]
+REFERENCE = (0, (3, 2))
 PARTS = [("mechanics", "mechanics"), ("water", "water"), ("audit", "balances"), ("output", "output"), ("other", "other")]
 # Columns of the history, and whether on a logarithmic axis.
 HISTORY = [("dt", False), ("kinetic_energy", False), ("max_speed", False), ("runout", False), ("height", False),
@@ -50,6 +52,7 @@ class Comparison:
         self.runs = [Run(folder, entry) for entry in self.json["runs"] if "folder" in entry]
         self.variants = [v for v in self.json["variants"] if any(run.variant == v for run in self.runs)]
         self.sizes = sorted({run.size for run in self.runs})
+        self.expects = False  # a reference has been drawn
 
     def colour(self, run):
         return style.CYCLE[self.variants.index(run.variant) % len(style.CYCLE)]
@@ -69,6 +72,8 @@ class Comparison:
             for size in self.sizes:
                 run = next(r for r in self.runs if r.size == size)
                 handles.append(Line2D([], [], color="0.4", linestyle=self.line(run), label=run.size_text(cells, steps)))
+        if self.expects:
+            handles.append(Line2D([], [], color="black", linewidth=0.7, linestyle=REFERENCE, label="reference of the case"))
         if any(run.failed for run in self.runs):
             handles.append(Line2D([], [], color="0.4", marker="x", linestyle="", markersize=5, label="failed here"))
         return handles
@@ -121,33 +126,40 @@ def draw_curves(comparison, axis, curves, title, quantity, unit, logarithmic, pa
     })
 
 
+def legend_below(comparison, figure):
+    handles = comparison.legend()
+    across = min(len(handles), 6 if figure.get_figwidth() > 6 else 3)
+    band = (0.1 + 0.16 * -(-len(handles) // across)) / figure.get_figheight()
+    figure.get_layout_engine().set(rect=(0, band, 1, 1 - band))
+    figure.legend(handles=handles, loc="lower center", ncol=across)
+
+
 def panels_with_legend(comparison, panels, picture):
-    """panels: (title, quantity, unit, logarithmic, curves, table)."""
+    """panels: (title, quantity, unit, logarithmic, curves, table, measure or None)."""
     if not panels:
         return []
     _, unit = style.time_unit(comparison.end())
     columns = 2 if len(panels) < 7 else 3
     figure, axes = style.grid_of_panels(len(panels), columns=columns, height=1.7)
-    for number, (axis, (title, quantity, of, logarithmic, curves, path)) in enumerate(zip(axes, panels)):
+    for number, (axis, (title, quantity, of, logarithmic, curves, path, measure)) in enumerate(zip(axes, panels)):
         draw_curves(comparison, axis, curves, title, quantity, of, logarithmic, path)
+        if measure is not None:
+            draw_references(axis, comparison, measure)
         axis.set_title(f"{style.letter(number)}  {axis.get_title()}", loc="left")
         axis.set_title("")
         axis.set_xlabel(f"$t$ [{unit}]" if number + columns >= len(axes) else "")
         finish_panel(axis)
         axis.margins(x=0.01)
-    handles = comparison.legend()
-    across = min(len(handles), 6)
-    band = (0.1 + 0.16 * -(-len(handles) // across)) / figure.get_figheight()
-    figure.get_layout_engine().set(rect=(0, band, 1, 1 - band))
-    figure.legend(handles=handles, loc="lower center", ncol=across)
+    legend_below(comparison, figure)
     figure.align_ylabels(axes)
     return [style.save_figure(figure, picture)]
 
 
 def draw_measures(comparison, output):
+    comparison.expects = False
     panels = []
     for measure in comparison.json["measures"]:
-        if not measure["asked"] or measure["kind"] == "stability":
+        if not measure["asked"] or measure["kind"] in ("stability", "particles", "cells"):
             continue
         curves = []
         for run in comparison.runs:
@@ -157,7 +169,7 @@ def draw_measures(comparison, output):
         if curves:
             name, quantity = measure["name"], readable(split_unit(measure["quantity"])[0])
             panels.append((name, quantity, measure["unit"], False, curves,
-                           os.path.join(output, f"compare_measure_{name}.csv")))
+                           os.path.join(output, f"compare_measure_{name}.csv"), measure))
     return panels_with_legend(comparison, panels, os.path.join(output, "compare_measures.png"))
 
 
@@ -171,7 +183,28 @@ def own_steps(run, seconds, values):
     return seconds[keep], values[keep]
 
 
+def draw_references(axis, comparison, measure, upwards=None):
+    """What the case expects of the measure, thin and black: over time from where the comparison begins, or, where
+    `upwards` says how it is drawn, over the coordinate of a profile."""
+    for run in comparison.runs[:1]:
+        for expectation in run.results.case().get("expect", []):
+            if expectation["measure"] != measure["name"] or "reference" not in expectation:
+                continue
+            curve = reference_curve(run.results, expectation, over_time=upwards is None)
+            if curve is None:
+                continue
+            x, y = curve[0], curve[1] * shown_unit(measure["unit"])[0]
+            if upwards is None:
+                divisor, _ = style.time_unit(comparison.end())
+                x = (x + stage_start(run.results, expectation) - run.start) / divisor
+            elif upwards:
+                x, y = y, x
+            axis.plot(x, y, color="black", linewidth=0.7, linestyle=REFERENCE, zorder=3)
+            comparison.expects = True
+
+
 def draw_history(comparison, output):
+    comparison.expects = False
     panels = []
     for name, logarithmic in HISTORY:
         curves, unit = [], ""
@@ -186,7 +219,8 @@ def draw_history(comparison, output):
                 unit = found[2]
         if curves and (logarithmic or name == "dt" or any(np.ptp(values) > 0 for _, _, values in curves)):
             title = "step" if name == "dt" else readable(name)
-            panels.append((title, "", unit, logarithmic, curves, os.path.join(output, f"compare_history_{name}.csv")))
+            panels.append((title, "", unit, logarithmic, curves, os.path.join(output, f"compare_history_{name}.csv"),
+                           None))
     return panels_with_legend(comparison, panels, os.path.join(output, "compare_history.png"))
 
 
@@ -286,5 +320,7 @@ def draw_differences(comparison, output):
 
 
 def draw(comparison, output):
-    return (draw_measures(comparison, output) + draw_history(comparison, output) + draw_cost(comparison, output)
-            + draw_differences(comparison, output))
+    written = []
+    for draw_figure in (draw_measures, draw_history, draw_cost, draw_differences):
+        written += draw_figure(comparison, output)
+    return written

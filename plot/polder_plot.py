@@ -28,6 +28,7 @@ except ImportError as missing:
 
 import compare_fields
 import compare_figures
+import compare_profiles
 import expectation_figures
 import field_figures
 import history_figures
@@ -80,7 +81,10 @@ def draw_comparison(options, output):
     comparison = compare_figures.Comparison(options.folder)
     os.makedirs(output, exist_ok=True)
     written = compare_fields.draw(comparison, output, options.field, options.time)
-    return written if options.field else written + compare_figures.draw(comparison, output)
+    if not options.field:
+        written += compare_figures.draw(comparison, output)
+        written += compare_profiles.draw(comparison, output)
+    return written
 
 
 def main(argv):

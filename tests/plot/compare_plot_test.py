@@ -76,6 +76,18 @@ class ComparePlotTest(PictureTest):
         for name in ("a_coarse", "a_fine", "b_fine"):
             subprocess.run([MAKE, os.path.join(cls.root, name)], check=True)
         later(os.path.join(cls.root, "b_fine"))
+        for name, shift in (("a_coarse", 0.0), ("a_fine", 0.0), ("b_fine", DELAY)):
+            with open(os.path.join(cls.root, name, "profile_depth.csv"), "w", encoding="utf-8") as file:
+                file.write("time[s],y[m],pore_pressure[Pa]\n")
+                for time in (0, 4, 8) if name == "b_fine" else (0, 5, 8):
+                    for y in (0.0, 1.0, 2.0):  # linear in place and time, so that what is in between is known
+                        file.write(f"{time + shift},{y},{1000 * time * (2 - y)}\n")
+            with open(os.path.join(cls.root, name, "case.toml"), "w", encoding="utf-8") as file:
+                file.write('[[expect]]\nmeasure = "depth"\nreference = "reference_depth.csv"\ntime = 8.0\n')
+            with open(os.path.join(cls.root, name, "reference_depth.csv"), "w", encoding="utf-8") as file:
+                file.write("y[m],p[Pa]\n0,16000\n2,0\n")
+        depth = measure("depth", "pore_pressure", "Pa", [], "cells")
+        depth["times"] = [0.0, 4.0, 5.0, 8.0]
         cls.json = {
             "case": "levee.toml", "title": "", "variants": ["one-layer", "two-layer", "broken"],
             "runs": [entry("a_coarse", "one-layer", 0.2), entry("a_fine", "one-layer", 0.1),
@@ -83,7 +95,7 @@ class ComparePlotTest(PictureTest):
                      {"label": "broken", "variant": "broken", "status": "failed", "reason": "bad"}],
             "measures": [measure("toe", "displacement_x", "m", [difference(0.02, 0.01, "yes")]),
                          measure("crest", "pore_pressure", "Pa", [difference(0.005, 0.01, "no")]),
-                         measure("max_speed", "max_speed", "m/s", [difference(0.1, None, "not known")], "history", False)],
+                         measure("max_speed", "max_speed", "m/s", [difference(0.1, None, "not known")], "history", False), depth],
         }
         cls.write(cls.json)
         cls.result = plot(cls.root)
@@ -106,7 +118,7 @@ class ComparePlotTest(PictureTest):
         pictures = [os.path.basename(path) for path in self.result.stdout.split()]
         for name in ("compare_soil_displacement.png", "compare_soil_deviatoric_strain.png",
                      "compare_fluid_pore_pressure.png", "compare_measures.png", "compare_history.png",
-                     "compare_cost.png", "compare_differences.png"):
+                     "compare_cost.png", "compare_differences.png", "compare_profiles.png"):
             self.assertIn(name, pictures)
         for name in pictures:
             path = os.path.join(self.plots, name)
@@ -122,6 +134,14 @@ class ComparePlotTest(PictureTest):
             np.testing.assert_allclose([float(table["time[s]"][i]) for i in rows], np.linspace(0, 10, 201), atol=1e-6)
             np.testing.assert_allclose([float(table["displacement_x[m]"][i]) for i in rows],
                                        np.array(probes["toe:ux[m]"], float), rtol=1e-6)
+
+    def test_profiles_are_those_of_the_same_times(self):
+        table = self.table("compare_profile_depth.csv")
+        for run in ("one-layer, cell 0.1 m", "two-layer, cell 0.1 m"):
+            for time in (0.0, 4.0, 5.0, 8.0):
+                values = [float(p) for p, r, t in zip(table["pore_pressure[kPa]"], table["run"], table["time[s]"])
+                          if r == run and float(t) == time]
+                np.testing.assert_allclose(values, [2 * time, time, 0.0])
 
     def test_pressures_are_drawn_in_kilopascals(self):
         self.assertEqual(set(self.table("compare_measure_crest.csv")["pore_pressure[kPa]"]), {"-1"})

@@ -291,6 +291,10 @@ TEST_CASE("times count from the end of the search for equilibrium") {
   text.insert(text.find("[[stage]]"),
               "[[stage]]\nname = \"rest\"\nmode = \"equilibrium\"\nduration = 10\nwater_flows = false\n"
               "reset_displacement = true\nreset_velocity = true\n\n");
+  text.insert(
+      text.find("[[measure]]"),
+      "[[measure]]\nname = \"profile\"\nkind = \"cells\"\nquantity = \"pore_pressure\"\nalong = \"y\"\n"
+      "every = \"10 ms\"\n\n");
   const std::string file = (scratch.path / "case.toml").string();
   std::ofstream(file) << text;
   const Outcome o = compare(scratch.path / "out", file, {"--cell", "0.2", "--cell", "0.1"});
@@ -303,6 +307,50 @@ TEST_CASE("times count from the end of the search for equilibrium") {
   CHECK(o.json.at("runs")[0].at("start") != o.json.at("runs")[1].at("start"));
   const auto& foot = measure(o.json, "foot");
   CHECK(foot.at("errors").at(0).at("known") == true);
+
+  // Profiles at the same times of both.
+  const auto& profile = measure(o.json, "profile");
+  std::vector<double> times = profile.at("times");
+  REQUIRE(times.size() >= 6);  // from the end of the search on
+  CHECK(std::abs(times.front()) < 1e-9);
+  // Of each its own times; those of the other in between.
+  struct Record {
+    double time;
+    Curve curve;
+  };
+  std::vector<Record> records[2];
+  for (int r = 0; r < 2; ++r) {
+    const auto& run = o.json.at("runs")[r];
+    const double start = run.at("start");
+    const CsvTable rows(scratch.path / "out" / run.at("folder").get<std::string>() / "profile_profile.csv");
+    for (std::size_t i = 0; i < rows.rows(); ++i) {
+      const double t = rows.column(0)[i] - start;  // rounded in the table
+      if (t < -1e-9) continue;
+      if (records[r].empty() || t > records[r].back().time) records[r].push_back({t, {}});
+      Curve& c = records[r].back().curve;
+      if (!c.x.empty() && rows.column(1)[i] <= c.x.back() * 1.001)
+        continue;  // cells beside each other are alike
+      c.x.push_back(rows.column(1)[i]), c.value.push_back(rows.column(2)[i]);
+    }
+  }
+  REQUIRE(records[0][0].curve.x.size() == 5);
+  REQUIRE(records[1][0].curve.x.size() == 10);
+  Trace traces[2];
+  for (const double t : times)
+    for (int r = 0; r < 2; ++r) {
+      std::size_t i = 0;
+      while (i + 2 < records[r].size() && records[r][i + 1].time < t) ++i;
+      const Record &a = records[r][i], &b = records[r][i + 1];
+      Curve c = a.curve;
+      const double share = std::min(1.0, (t - a.time) / (b.time - a.time));
+      for (std::size_t k = 0; k < c.x.size(); ++k) c.value[k] += share * (b.curve.value[k] - c.value[k]);
+      traces[r].push_back(c);
+    }
+  app::Extremes extremes;
+  app::extend(extremes, traces[1]);
+  CHECK(profile.at("scale").get<double>() == doctest::Approx(extremes.range()));
+  CHECK(profile.at("errors")[0].at("l2").get<double>() ==
+        doctest::Approx(app::difference(traces[0], traces[1]).l2 / extremes.range()));
 }
 
 TEST_CASE("a run that fails is reported, the others go on") {
