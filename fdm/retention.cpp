@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "fdm/suction_integrals.hpp"
 
 namespace polder::fdm {
 namespace {
@@ -185,16 +186,55 @@ RetentionCurve::Curve RetentionCurve::at(double h) const {
   return {};
 }
 
+// Over the height of a cell with suction head h at its centre.
+RetentionCurve::Curve RetentionCurve::mean(double h) const {
+  const double low = h - 0.5 * height_, high = h + 0.5 * height_;
+  if (high <= 0) return {};
+  const double per_height = 1 / height_;
+  return {(integrals_->saturation(high) - integrals_->saturation(low)) * per_height,
+          (at(high).s - at(low).s) * per_height,
+          (integrals_->conductivity(low) - integrals_->conductivity(high)) * per_height};
+}
+
+void RetentionCurve::average_over(double height) {
+  height_ = always_saturated() ? 0 : height;
+  full_pressure_ = 0.5 * height_ / per_weight_;
+  if (height_ == 0 || integrals_) return;
+  const double scale = r_.model == Model::brooks_corey ? r_.entry_head
+                       : r_.model == Model::tabulated  ? first_head_
+                       : r_.alpha > 0                  ? 1 / r_.alpha
+                                                       : suction_head(0.5);
+  integrals_ = std::make_shared<const SuctionIntegrals>(
+      [this](double h) {
+        const Curve c = at(h);
+        return std::pair{c.s, c.k};
+      },
+      scale, 2 * kDriestSuction);
+}
+
 double RetentionCurve::saturation(double p) const {
-  return r_.residual + span_ * at(-p * per_weight_).s;
+  const double h = -p * per_weight_;
+  return r_.residual + span_ * (height_ > 0 ? mean(h) : at(h)).s;
 }
 
 double RetentionCurve::capacity(double p) const {
-  return -span_ * per_weight_ * at(-p * per_weight_).c;
+  const double h = -p * per_weight_;
+  return -span_ * per_weight_ * (height_ > 0 ? mean(h) : at(h)).c;
 }
 
 double RetentionCurve::relative_conductivity(double p) const {
   return at(-p * per_weight_).k;
+}
+
+void RetentionCurve::conductivity_slope(std::span<const int> which, std::span<const double> p,
+                                        std::span<double> slope) const {
+  constexpr double kStep = 1e-4;  // of h, for the difference quotient of the curve at a point
+  for (const int i : which) {
+    const double h = -p[i] * per_weight_;
+    const double low = height_ > 0 ? h - 0.5 * height_ : h * (1 - kStep);
+    const double high = height_ > 0 ? h + 0.5 * height_ : h * (1 + kStep);
+    slope[i] = high > 0 ? per_weight_ * (at(low).k - at(high).k) / (high - low) : 0;
+  }
 }
 
 void RetentionCurve::evaluate(std::span<const int> which, std::span<const double> p,
@@ -208,6 +248,15 @@ void RetentionCurve::evaluate(std::span<const int> which, std::span<const double
       relative_conductivity[i] = v.k;
     }
   };
+  if (height_ > 0) {
+    for (const int i : which) {
+      const Curve v = mean(-p[i] * per_weight_);
+      saturation[i] = r_.residual + span_ * v.s;
+      capacity[i] = -span_ * per_weight_ * v.c;
+      relative_conductivity[i] = v.k;
+    }
+    return;
+  }
   switch (r_.model) {
     case Model::van_genuchten:
       return run([this](double h) { return van_genuchten(h); });

@@ -16,13 +16,19 @@
 //                  Sci. Stat. Comput. 5) over ln(1 + h / h_1), h_1 the first suction head above zero;
 //                  constant beyond the last point
 //   saturated      S = S_max and k_r = 1 at any pressure
+//
+// On request the curve of a cell: means over its height of a hydrostatic distribution with the given pressure
+// at the centre (fdm/suction_integrals.hpp).
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace polder::fdm {
+
+class SuctionIntegrals;
 
 struct Retention {
   enum class Model { saturated, van_genuchten, brooks_corey, gardner, haverkamp, tabulated };
@@ -65,6 +71,15 @@ class RetentionCurve {
   // residual saturation, which no finite suction reaches, and below it: that of kDriestSuction.
   double pressure(double saturation) const;
 
+  // From here on saturation(), capacity(), evaluate() and conductivity_slope() are means over this height
+  // [m]; 0: values at a point.
+  void average_over(double height);
+  // Pressure from which on the soil is full.
+  double full_pressure() const { return full_pressure_; }
+
+  // dk_r/dp at p[i] for all i in `which`.
+  void conductivity_slope(std::span<const int> which, std::span<const double> p,
+                          std::span<double> slope) const;
   // The first three at p[i] for all i in `which`, with one choice of the model for all of them.
   void evaluate(std::span<const int> which, std::span<const double> p, std::span<double> saturation,
                 std::span<double> capacity, std::span<double> relative_conductivity) const;
@@ -81,6 +96,7 @@ class RetentionCurve {
   Curve haverkamp(double h) const;
   Curve tabulated(double h) const;
   Curve at(double h) const;
+  Curve mean(double h) const;
   double suction_head(double effective) const;
   void prepare_table();
 
@@ -88,6 +104,8 @@ class RetentionCurve {
   double per_weight_;  // 1 / gamma_w [m/Pa]
   double span_;        // S_max - S_r
   double m_ = 0;
+  double height_ = 0, full_pressure_ = 0;
+  std::shared_ptr<const SuctionIntegrals> integrals_;
   // Table over x = ln(1 + h / h_1): values and slopes of S_e and ln k_r.
   double first_head_ = 1;
   std::vector<double> x_, s_, s_slope_, k_, k_slope_;

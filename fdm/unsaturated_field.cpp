@@ -1,7 +1,7 @@
 // State and iteration of UnsaturatedField.
 //
 // One iteration evaluates the balance at the present p and solves the symmetric system of its derivative
-// without that of k_r (modified Picard: Celia, Bouloutas & Zarba 1990). Four things make it robust and fast:
+// without that of k_r (modified Picard: Celia, Bouloutas & Zarba 1990). Five things make it robust and fast:
 // * Cells whose storage is far from linear over the change take the root of their own balance instead, so
 // that
 //   dry soil does not shoot over whatever its curve (in place of the switching of primary variables by
@@ -9,6 +9,7 @@
 // * The iterates are combined after Anderson (fdm/anderson.hpp), which makes up for the missing derivative.
 // * The combination starts afresh when the residual has grown.
 // * When it has not fallen for a while the moves are halved: a lagged k_r can go around in circles.
+// * Where all that takes long Newton's method takes over (fdm/unsaturated_newton.cpp).
 #include "fdm/unsaturated_field.hpp"
 
 #include <algorithm>
@@ -56,6 +57,12 @@ UnsaturatedField<D>::~UnsaturatedField() = default;
 template <int D>
 const char* UnsaturatedField<D>::solver_name() const {
   return solver_->name();
+}
+
+template <int D>
+void UnsaturatedField<D>::set_averages(bool over_cells) {
+  averages_ = over_cells;
+  for (RetentionCurve& curve : curves_) curve.average_over(over_cells ? cells_.grid().spacing() : 0);
 }
 
 template <int D>
@@ -152,6 +159,7 @@ void UnsaturatedField<D>::refresh() {
   discharge_.drain.assign(cells_.conditions().drains.size(), 0);
   balance_ = {};
   find_lines();
+  find_steps();
   basins_ = find_basins(cells_, blocked_);
 
   Connectivity<D> connectivity;
@@ -184,8 +192,10 @@ double UnsaturatedField<D>::changed_pressure(int c, double d) const {
   constexpr int kSections = 60;
   if (inertia_) return changed_pressure_moving(c, d);
   const double before = p_now_[c], after = before + d;
-  if (saturated_[c] || (before >= 0 && after >= 0) || std::abs(d) < kLinear * std::abs(before)) return after;
   const RetentionCurve& curve = curves_[soil_[c]];
+  const double full = curve.full_pressure();
+  if (saturated_[c] || (before >= full && after >= full) || std::abs(d) < kLinear * std::abs(before - full))
+    return after;
   const double pores = cell_[c].pores, links = diagonal_[c] - pores * capacity_[c];
   const double target = diagonal_[c] * d;
   const auto excess = [&](double p) {
@@ -268,48 +278,60 @@ StepReport UnsaturatedField<D>::solve(const UnsaturatedStep& step) {
   StepReport report;
   const std::span<const double> links =
       std::span<const double>(conductance_).first(cells_.interior_faces().size());
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr int kPatience = 8;
+  // Where the symmetric iteration takes long Newton's method takes over, in steady flow at once; where that
+  // finds no way down it pauses for some iterations.
+  constexpr int kNewtonAfter = 8, kNewtonAfterSteady = 0, kPause = 4;
   // Near saturation the k_r of fine soils falls without bound in its slope (van Genuchten's with n < 2), and
-  // the iteration goes round in circles. From here on it keeps the k_r that it has: water is balanced all the
-  // same.
-  constexpr int kLagAfter = 16;
-  double last = std::numeric_limits<double>::infinity(), best = last;
-  int waited = 0;
+  // both may fail. From here on the iteration keeps the k_r that it has: water is balanced all the same.
+  constexpr int kLagAfter = 20;
+  double last = kInfinity, best = last;
+  int waited = 0, next_newton = may_lag_ ? kNewtonAfter : kNewtonAfterSteady;
+  bool assembled = false;
+  Residual residual;
   relaxation_ = 1;
   lags_ = false;
   for (int i = 0;; ++i) {
-    assemble();
-    Residual residual;
     try {
-      residual = gather();
-    } catch (const NumericalError& error) {
-      report.failure = error.what();
-      return report;
-    }
-    report.residual = residual.relative();
-    if (!std::isfinite(residual.sum)) {
-      report.failure = "the pressure is not a number";
-      return report;
-    }
-    if (residual.small(tolerance_)) break;
-    if (i == kLagAfter && may_lag_ && !inertia_) {
-      lags_ = report.lagged = true;
-      lagged_kr_ = kr_;
-      acceleration_.restart();
-      relaxation_ = 1;
-      last = best = std::numeric_limits<double>::infinity(), waited = 0;
-    }
-    if (i == max_iterations_) {
-      report.failure = "no convergence in " + std::to_string(i) + " iterations";
-      return report;
-    }
-    pin_closed_basins();
-    // No more digits than the next evaluation can use; all of them where the balance is linear.
-    Accuracy accuracy;
-    accuracy.tolerance =
-        std::clamp(0.01 * (tolerance_ * residual.scale + residual.rounding) / residual.sum, 1e-12, 1e-3);
-    accuracy.floor = rounding_norm_;
-    try {
+      if (!assembled) {
+        assemble();
+        residual = gather();
+      }
+      assembled = false;
+      report.residual = residual.relative();
+      if (!std::isfinite(residual.sum)) {
+        report.failure = "the pressure is not a number";
+        return report;
+      }
+      if (residual.small(tolerance_)) break;
+      if (i == kLagAfter && may_lag_ && !inertia_) {
+        lags_ = report.lagged = true;
+        lagged_kr_ = kr_;
+        acceleration_.restart();
+        relaxation_ = 1;
+        last = best = kInfinity, waited = 0;
+      }
+      if (i == max_iterations_) {
+        report.failure = "no convergence in " + std::to_string(i) + " iterations";
+        return report;
+      }
+      pin_closed_basins();
+      const double enough = 0.1 * (tolerance_ * residual.scale + residual.rounding) / residual.sum;
+      if (!inertia_ && !lags_ && i >= next_newton) {
+        const double gain = last < kInfinity ? residual.sum / last : 1;
+        last = residual.sum;
+        acceleration_.restart();
+        report.iterations = i + 1;
+        assembled =
+            newton_step(residual, std::clamp(0.1 * gain * gain, std::max(1e-4, enough), 0.01), report);
+        if (!assembled) next_newton = i + 1 + kPause;
+        continue;
+      }
+      // No more digits than the next evaluation can use; all of them where the balance is linear.
+      Accuracy accuracy;
+      accuracy.tolerance = std::clamp(0.1 * enough, 1e-12, 1e-3);
+      accuracy.floor = rounding_norm_;
       report.linear_iterations += solver_->solve({sink_, links, rhs_}, accuracy, change_).iterations;
     } catch (const NumericalError& error) {
       report.failure = error.what();
@@ -368,54 +390,6 @@ void UnsaturatedField<D>::accept() {
     balance_.magnitude += std::abs(l.flow);
     (l.drain ? discharge_.drain : discharge_.well)[l.owner] += l.flow;
   }
-}
-
-// ---- steady state
-
-// Each step starts from the last one; its length grows the faster the more easily the iteration converges,
-// and slowly where a longer one has failed. Steady when storage is no longer part of the balance.
-template <int D>
-StepReport UnsaturatedField<D>::steady(const UnsaturatedStep& given) {
-  if (!given.velocity.empty())
-    throw std::logic_error("UnsaturatedField: steady flow needs a resting skeleton");
-  may_lag_ = false;  // what is steady must not depend on the way there
-  const StepReport total = steady_steps(given);
-  may_lag_ = true;
-  return total;
-}
-
-template <int D>
-StepReport UnsaturatedField<D>::steady_steps(UnsaturatedStep step) {
-  constexpr int kSteps = 300;
-  constexpr double kLongest = 1e16;  // [s]
-  const UnsaturatedStep given = step;
-  StepReport total;
-  double failed = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < kSteps; ++i) {
-    const StepReport r = solve(step);
-    total.iterations += r.iterations;
-    total.linear_iterations += r.linear_iterations;
-    total.residual = r.residual, total.largest_change = r.largest_change;
-    total.failure = r.failure;
-    if (!r.converged) {
-      if (step.dt < 1e-8 * given.dt) return total;
-      failed = step.dt;
-      step.dt *= 0.1;
-      continue;
-    }
-    double storing = 0;
-    for (int c = 0; c < cells_.count(); ++c)
-      storing += std::abs(cell_[c].pores * (s_now_[c] - s_old_[c])) +
-                 std::abs(cell_[c].elastic * s_now_[c] * (p_now_[c] - p_old_[c]));
-    if (storing <= 10 * tolerance_ * balance_.magnitude || step.dt >= kLongest) {
-      total.converged = true;
-      return total;
-    }
-    const double growth = r.iterations <= 10 ? 10 : r.iterations <= 20 ? 4 : 2;
-    step.dt *= step.dt * growth < failed ? growth : 1.5;
-  }
-  total.failure = "the steady state was not reached in " + std::to_string(kSteps) + " steps";
-  return total;
 }
 
 // ---- evaluation

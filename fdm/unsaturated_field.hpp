@@ -20,7 +20,8 @@
 // and in a saturated scene the step is that of PressureField. Soil whose retention is `saturated` counts as
 // saturated under suction as well: p+ = p there.
 //
-// Iteration: fdm/unsaturated_field.cpp. A step that does not converge changes nothing and says so.
+// Iteration: fdm/unsaturated_field.cpp and unsaturated_newton.cpp. A step that does not converge changes
+// nothing and says so.
 //
 // Pressures [Pa], compression positive; zero in inactive cells. Discharges as in fdm/pressure_field.hpp.
 #pragma once
@@ -36,6 +37,7 @@
 #include "fdm/anderson.hpp"
 #include "fdm/boundary_flow.hpp"
 #include "fdm/cell_operators.hpp"
+#include "fdm/flexible_gmres.hpp"
 #include "fdm/linear_system.hpp"
 #include "fdm/node_gradient.hpp"
 #include "fdm/pressure_field.hpp"
@@ -120,6 +122,10 @@ class UnsaturatedField {
   // Relative to the sum of the magnitudes of the balance's terms.
   void set_tolerance(double tolerance) { tolerance_ = tolerance; }
   void set_max_iterations(int n) { max_iterations_ = n; }
+  // Curves and flows through upright faces as means over the height of a cell in which water hangs at rest
+  // (fdm/suction_integrals.hpp): a free surface then passes evenly through cells that are larger than the
+  // capillary fringe. Needs a resting skeleton.
+  void set_averages(bool over_cells);
 
   Reals& pressure() { return p_; }  // [Pa], slots
   const Reals& pressure() const { return p_; }
@@ -152,6 +158,8 @@ class UnsaturatedField {
 
  private:
   StepReport steady_steps(UnsaturatedStep step);
+  StepReport steady_homotopy(const UnsaturatedStep& step);
+  double passage(const UnsaturatedStep& step) const;
   struct Cell {      // what a step holds for an active cell
     double pores;    // n vf V / dt [m3/s]
     double elastic;  // vf V (n / K_w + c_s) / dt [m3/(Pa s)]
@@ -178,6 +186,11 @@ class UnsaturatedField {
   void prepare_faces(const UnsaturatedStep& step);
   void prepare_lines();
   void find_lines();
+  void find_steps();
+  // Not yet on the way to a steady state, where the flow is a rough one.
+  bool runs_off() const { return averages_ && kr_floor_ < 1e-4; }
+  void run_off();
+  void add_run_off(std::span<const double> v, std::span<double> flow) const;
   void assemble();
   void assemble_lines();
   Residual gather();
@@ -185,6 +198,9 @@ class UnsaturatedField {
   double changed_pressure_moving(int cell, double change) const;
   double changed_pressure(int c, double d) const;
   double advance();
+  void find_slopes();
+  void multiply(std::span<const double> v, std::span<double> out);
+  bool newton_step(Residual& residual, double reduction, StepReport& report);
   void accept();
   void update_gradient_faces();
   bool wet(int cell) const { return p_now_[cell] > -fringe_[cell]; }
@@ -203,10 +219,12 @@ class UnsaturatedField {
   std::unique_ptr<LinearSolver<D>> solver_;
   NodeGradient<D> gradient_;
   FaceWeighting weighting_ = FaceWeighting::mean;
+  bool averages_ = false;
   double tolerance_ = 1e-7;
   int max_iterations_ = 40;
   bool may_lag_ = true, lags_ = false;  // k_r; see solve()
   Reals lagged_kr_;
+  double kr_floor_ = 0;  // least k_r, on the way to a steady state
   std::uint64_t grid_revision_ = 0, cells_revision_ = 0;
 
   Reals p_, saturation_, positive_, increment_;  // slots
@@ -227,6 +245,9 @@ class UnsaturatedField {
   Reals projection_;                  // inflow with the correction of v*, times S [m3/s]
   Reals sink_, rhs_, diagonal_, change_, image_;
   Anderson acceleration_;
+  FlexibleGmres gmres_;
+  Reals kr_slope_;                             // dk_r/dp [1/Pa]
+  Reals slope_low_, slope_high_, slope_flow_;  // of the faces, see find_slopes() [m3/(Pa s)]
   double relaxation_ = 1;
   Basins basins_;
   std::vector<double> basin_sink_, basin_scale_;
@@ -244,6 +265,13 @@ class UnsaturatedField {
   std::vector<BoundaryLaw> laws_;       // of the boundary faces
   std::vector<unsigned char> blocked_;  // interior faces that a sheet closes; empty: none
 
+  // Where a cut surface descends in a step, see fdm/unsaturated_steps.cpp.
+  struct Step {
+    std::vector<int> above, below;  // boundary faces: upright ones, and level ones at their foot
+    std::vector<double> potential;  // what each level face could take [m3/s]
+    double demand = 0, part = 0;    // sum of that, and the part of it that they get
+  };
+  std::vector<Step> steps_;
   std::vector<LineSink> lines_;
   Reals line_flow_, line_conductance_;  // of the cells; empty without wells and drains
 

@@ -22,9 +22,6 @@ constexpr double kClosedBasin = 1e-11;
 // balance.
 constexpr double kRegular = 1e-12;
 
-// Conductance of a drain whose own is infinite, over that of its cell's faces in saturated soil.
-constexpr double kOpenLine = 1e4;
-
 }  // namespace
 
 // ---- before the iteration
@@ -35,6 +32,8 @@ void UnsaturatedField<D>::prepare(const UnsaturatedStep& step) {
       {step.porosity.size(), step.volume_fraction.size(), step.darcy_mobility.size(), step.soil.size()}));
   const std::size_t slots = cells_.grid().slots();
   inertia_ = !step.velocity.empty();
+  if (inertia_ && averages_)
+    throw std::logic_error("UnsaturatedField: curves over the height of cells need a resting skeleton");
   if (inertia_ != !step.mobility.empty())
     throw std::logic_error("UnsaturatedField: a moving skeleton needs both velocity and mobility");
   if (inertia_ && (step.velocity.size() < slots * kStride || step.mobility.size() < slots))
@@ -99,6 +98,9 @@ void UnsaturatedField<D>::prepare_faces(const UnsaturatedStep& step) {
     law.upper_conductivity = curve.relative_conductivity(law.upper);
     law.lower_conductivity = std::isfinite(law.lower) ? curve.relative_conductivity(law.lower) : 0;
     law.upstream = weighting_ == FaceWeighting::upstream;
+    if (averages_)
+      split_law(f, cells_.conditions(), cells_.centre(cells[f.cell].index)[D - 1], cells_.grid().spacing(),
+                law);
     laws_[b] = law;
     kappa_[n_interior + b] =
         step.darcy_mobility[slot] * soils_[soil_[f.cell]].anisotropy[f.axis] * f.area / f.distance;
@@ -145,59 +147,6 @@ void UnsaturatedField<D>::prepare_faces(const UnsaturatedStep& step) {
   }
 }
 
-template <int D>
-void UnsaturatedField<D>::find_lines() {
-  const WaterConditions<D>& conditions = cells_.conditions();
-  blocked_ = blocked_faces<D>(cells_, conditions.sheets);
-  lines_.clear();
-  const auto add = [&](const std::vector<Point<D>>& points, int owner, bool drain) {
-    for (const CrossedCell& c : crossed_cells<D>(cells_, points))
-      lines_.push_back({.cell = c.cell, .share = c.share, .owner = owner, .drain = drain});
-  };
-  for (int i = 0; i < static_cast<int>(conditions.wells.size()); ++i)
-    add(conditions.wells[i].points, i, false);
-  for (int i = 0; i < static_cast<int>(conditions.drains.size()); ++i)
-    add(conditions.drains[i].points, i, true);
-  line_flow_.assign(lines_.empty() ? 0 : cells_.count(), 0);
-  line_conductance_.assign(line_flow_.size(), 0);
-}
-
-template <int D>
-void UnsaturatedField<D>::prepare_lines() {
-  constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-  for (LineSink& l : lines_) {
-    double links = 0;
-    for (int face : cells_.cells()[l.cell].faces)
-      if (face >= 0) links += kappa_[face];
-    if (l.drain) {
-      const WaterDrain<D>& d = cells_.conditions().drains[l.owner];
-      l.pressure = d.pressure;
-      l.conductance = std::isfinite(d.conductance) ? d.conductance * l.share : kOpenLine * links;
-      l.least = 0, l.most = kUnlimited;
-    } else {
-      const WaterWell<D>& w = cells_.conditions().wells[l.owner];
-      const double rate = w.rate * l.share;
-      const bool limited = std::isfinite(w.limiting_pressure);
-      l.pressure = w.limiting_pressure;
-      l.conductance = limited ? links : 0;
-      l.least = limited ? std::min(rate, 0.0) : rate;
-      l.most = limited ? std::max(rate, 0.0) : rate;
-    }
-  }
-}
-
-template <int D>
-void UnsaturatedField<D>::assemble_lines() {
-  std::fill(line_flow_.begin(), line_flow_.end(), 0.0);
-  std::fill(line_conductance_.begin(), line_conductance_.end(), 0.0);
-  for (LineSink& l : lines_) {
-    const double driven = l.conductance > 0 ? l.conductance * (p_now_[l.cell] - l.pressure) : l.most;
-    l.flow = std::clamp(driven, l.least, l.most);
-    line_flow_[l.cell] += l.flow;
-    if (driven > l.least && driven < l.most) line_conductance_[l.cell] += l.conductance;
-  }
-}
-
 // Boundary faces as the gradient of p+ sees them: the soil's surface is free of p+ wherever it is not under
 // water, whether water passes or not, and so is a side of the grid that stands for it; elsewhere on the sides
 // only where a pressure acts.
@@ -226,6 +175,7 @@ void UnsaturatedField<D>::assemble() {
   const bool upstream = weighting_ == FaceWeighting::upstream;
   for (std::size_t s = 0; s < curves_.size(); ++s)
     curves_[s].evaluate(cells_of_soil_[s], p_now_, s_now_, capacity_, kr_);
+  if (kr_floor_ > 0) for_each(cells_.count(), [&](int c) { kr_[c] += kr_floor_ * (1 - kr_[c]); });
   if (lags_) std::copy(lagged_kr_.begin(), lagged_kr_.end(), kr_.begin());
   if (!lines_.empty()) assemble_lines();
   if (inertia_) for_each(cells_.count(), [&](int c) { plus_change_[c] = positive(c) - positive_old_[c]; });
@@ -246,6 +196,7 @@ void UnsaturatedField<D>::assemble() {
     conductance_[n_interior + b] = flow.conductance;
     if (inertia_ && wet(c)) conductance_[n_interior + b] += lambda_[n_interior + b];
   }
+  if (runs_off()) run_off();
 }
 
 // Residual and sink of every cell; the sum of the residuals' magnitudes and what to measure it by.
