@@ -1,10 +1,11 @@
 #include "tests/verify/free_surface.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <memory>
 #include <numbers>
 
+#include "fdm/phreatic_exit.hpp"
 #include "tests/verify/seepage_scene.hpp"
 
 namespace polder::verify {
@@ -34,32 +35,22 @@ Boundary head(const char* name, int side, double level, bool seepage_above) {
   return b;
 }
 
-// Takes the state of a softer fringe: pressures below zero shrink with the fringe, so that k_r stays.
-void start_from(const SeepageScene& softer, double ratio, SeepageScene& s) {
-  for (const auto& c : s.cells.cells()) {
-    const double p = softer.field.pressure()[c.slot];
-    s.field.pressure()[c.slot] = p > 0 ? p : p / ratio;
-  }
-}
-
-// Where the pressure in a column of cells passes zero, the highest such place [m].
-double zero_height(const SeepageScene& s, int column) {
-  const std::vector<double> pressure(s.field.pressure().begin(), s.field.pressure().end());
-  const std::vector<double> p = s.line(1, column, pressure);
-  double z = 0;
-  for (std::size_t j = 0; j + 1 < p.size(); ++j)
-    if (p[j] > 0 && p[j + 1] <= 0)
-      z = s.grid.origin()[1] + s.grid.spacing() * (static_cast<double>(j) + 0.5 + p[j] / (p[j] - p[j + 1]));
-  return z;
-}
-
-void estimate_limit(FreeSurfaceLimit& limit) {
-  const std::size_t n = limit.found.size();
-  if (n < 2) return;
-  const FreeSurface &coarse = limit.found[n - 2], &fine = limit.found[n - 1];
-  const double share = std::exp2(-2.0 / 3);  // of the distance that is left after doubling alpha
-  limit.discharge = 2 * fine.outflow - coarse.outflow;
-  limit.exit = (fine.exit - share * coarse.exit) / (1 - share);
+// Finds the steady state; both boundaries of the scene in the order upstream, downstream.
+FreeSurface steady_flow(SeepageScene& s, double alpha, const Fringe& fringe) {
+  s.field.set_averages(fringe.averages);
+  const auto start = std::chrono::steady_clock::now();
+  const fdm::StepReport report = s.field.steady(s.unsaturated(1000 / alpha));
+  FreeSurface found{
+      .converged = report.converged,
+      .iterations = report.iterations,
+      .linear_iterations = report.linear_iterations,
+      .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+      .inflow = -s.field.discharge().boundary[0],
+      .outflow = s.field.discharge().boundary[1],
+      .exit = std::nan("")};
+  for (const fdm::PhreaticExit& e : fdm::phreatic_exits(s.cells, s.field.pressure()))
+    if (e.boundary == 1 && e.found) found.exit = e.place[1];
+  return found;
 }
 
 }  // namespace
@@ -68,38 +59,22 @@ double charny_discharge(double length, double h1, double h2) {
   return kConductivity * (h1 * h1 - h2 * h2) / (2 * length);
 }
 
-FreeSurfaceLimit rectangular_dam(double length, double h1, double h2, int cells, double steepest) {
-  const double h = h1 / cells;
+FreeSurface rectangular_dam(double length, double h1, double h2, int cells, Fringe fringe) {
+  const double h = h1 / cells, alpha = fringe.steepness / h1;
   const int columns = static_cast<int>(std::lround(length / h));
-  FreeSurfaceLimit limit;
-  std::unique_ptr<SeepageScene> softer;
-  for (double alpha = 20 / h1; alpha <= 1.001 * steepest / h1; alpha *= 2) {
-    auto s = std::make_unique<SeepageScene>(Point<2>{0, 0}, Index<2>{columns, cells}, h,
-                                            std::vector<fdm::Soil<2>>{gardner(alpha, 0.1)});
-    s->set_conductivity(kConductivity);
-    s->conditions.boundaries = {head("upstream", 0, h1, false), head("downstream", 1, h2, true)};
-    s->update();
-    s->set_head([&](const Point<2>& x) {  // Dupuit
-      return std::sqrt(h1 * h1 - (h1 * h1 - h2 * h2) * x[0] / length) - x[1];
-    });
-    if (softer) start_from(*softer, 2, *s);
-    const fdm::StepReport report = s->field.steady(s->unsaturated(1000 / alpha));
-    const fdm::Discharge& q = s->field.discharge();
-    limit.alpha.push_back(alpha);
-    limit.found.push_back({.converged = report.converged,
-                           .iterations = report.iterations,
-                           .inflow = -q.boundary[0],
-                           .outflow = q.boundary[1],
-                           .exit = zero_height(*s, columns - 1)});
-    softer = std::move(s);
-  }
-  estimate_limit(limit);
-  return limit;
+  SeepageScene s({0, 0}, {columns, cells}, h, {gardner(alpha, 0.1)});
+  s.set_conductivity(kConductivity);
+  s.conditions.boundaries = {head("upstream", 0, h1, false), head("downstream", 1, h2, true)};
+  s.update();
+  s.set_head([&](const Point<2>& x) {  // Dupuit
+    return std::sqrt(h1 * h1 - (h1 * h1 - h2 * h2) * x[0] / length) - x[1];
+  });
+  return steady_flow(s, alpha, fringe);
 }
 
-FreeSurfaceLimit trapezoidal_levee(double base, double upstream, double downstream, double h1, double h2,
-                                   double cell, double steepest) {
-  const double top = base / (upstream + downstream), apex = upstream * top;
+FreeSurface trapezoidal_levee(double base, double upstream, double downstream, double h1, double h2,
+                              double cell, Fringe fringe) {
+  const double top = base / (upstream + downstream), apex = upstream * top, alpha = fringe.steepness / h1;
   const Index<2> size{static_cast<int>(std::lround(base / cell)),
                       static_cast<int>(std::ceil(top / cell - 1e-9)) + 1};
   // Share of a cell below both slopes, by columns of its width.
@@ -113,42 +88,20 @@ FreeSurfaceLimit trapezoidal_levee(double base, double upstream, double downstre
     }
     return sum / kStrips;
   };
-  FreeSurfaceLimit limit;
-  std::unique_ptr<SeepageScene> softer;
-  for (double alpha = 20 / h1; alpha <= 1.001 * steepest / h1; alpha *= 2) {
-    auto s = std::make_unique<SeepageScene>(Point<2>{0, 0}, size, cell,
-                                            std::vector<fdm::Soil<2>>{gardner(alpha, 0.1)});
-    s->set_conductivity(kConductivity);
-    s->fill_cells(fill);
-    Boundary water = head("upstream", fdm::kFreeSurface, h1, false);
-    water.to[0] = apex;
-    Boundary air = head("downstream", fdm::kFreeSurface, h2, true);
-    air.from[0] = apex;
-    s->conditions.boundaries = {water, air};
-    s->update();
-    s->set_head([&](const Point<2>& x) {
-      const double part = std::clamp((x[0] - upstream * h1) / (base - upstream * h1), 0.0, 1.0);
-      return h1 + (h2 - h1) * part - x[1];
-    });
-    if (softer) start_from(*softer, 2, *s);
-    const fdm::StepReport report = s->field.steady(s->unsaturated(1000 / alpha));
-    const fdm::Discharge& q = s->field.discharge();
-    double exit = h2;  // the highest face of the downstream slope that lets water out
-    for (const auto& f : s->cells.boundary_faces()) {
-      const auto& c = s->cells.cells()[f.cell];
-      const double z = s->cells.centre(c.index)[1], rise = f.axis == 1 ? f.distance : 0;
-      if (f.boundary == 1 && s->field.pressure()[c.slot] > kGamma * rise) exit = std::max(exit, z + rise);
-    }
-    limit.alpha.push_back(alpha);
-    limit.found.push_back({.converged = report.converged,
-                           .iterations = report.iterations,
-                           .inflow = -q.boundary[0],
-                           .outflow = q.boundary[1],
-                           .exit = exit});
-    softer = std::move(s);
-  }
-  estimate_limit(limit);
-  return limit;
+  SeepageScene s({0, 0}, size, cell, {gardner(alpha, 0.1)});
+  s.set_conductivity(kConductivity);
+  s.fill_cells(fill);
+  Boundary water = head("upstream", fdm::kFreeSurface, h1, false);
+  water.to[0] = apex;
+  Boundary air = head("downstream", fdm::kFreeSurface, h2, true);
+  air.from[0] = apex;
+  s.conditions.boundaries = {water, air};
+  s.update();
+  s.set_head([&](const Point<2>& x) {
+    const double part = std::clamp((x[0] - upstream * h1) / (base - upstream * h1), 0.0, 1.0);
+    return h1 + (h2 - h1) * part - x[1];
+  });
+  return steady_flow(s, alpha, fringe);
 }
 
 LevelChange level_change(double h0, double hb, double cell, double alpha, const std::vector<double>& times) {
