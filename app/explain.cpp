@@ -1,6 +1,6 @@
 // `polder explain`: what a case needs and what it skips, its size, its step limit, and how long it would
 // take.
-#include <chrono>
+#include <algorithm>
 #include <cmath>
 #include <ostream>
 
@@ -8,6 +8,7 @@
 #include "app/check_scene.hpp"
 #include "app/commands.hpp"
 #include "app/digits.hpp"
+#include "app/run_time.hpp"
 #include "app/size_estimate.hpp"
 #include "core/error.hpp"
 #include "core/threads.hpp"
@@ -76,20 +77,68 @@ std::string stage_text(const coupling::Stage& s, double steps) {
   return "dynamic, " + time + ", about " + digits(steps, 3) + " steps";
 }
 
-// Seconds of wall clock for one step, from a short trial of the first stage.
-double trial(Simulation& simulation) {
-  constexpr double kPatience = 1.0;  // [s]
-  constexpr int kWarmUp = 2, kMost = 200;
-  const auto now = [] { return std::chrono::steady_clock::now(); };
-  const auto seconds = [](auto duration) { return std::chrono::duration<double>(duration).count(); };
-  for (int i = 0; i < kWarmUp && !simulation.finished(); ++i) simulation.step();
-  const auto start = now();
-  int steps = 0;
-  while (steps < kMost && !simulation.finished() && seconds(now() - start) < kPatience) {
-    simulation.step();
-    ++steps;
+void explain_random_fields(const Scene& scene, std::ostream& out) {
+  using R = coupling::RandomProperty;
+  for (const coupling::Body& body : scene.bodies)
+    for (const R& r : body.random) {
+      out << "random        "
+          << name_of(r.property, {{R::Property::cohesion, "cohesion"},
+                                  {R::Property::friction, "friction"},
+                                  {R::Property::shear_strength, "shear strength"},
+                                  {R::Property::conductivity, "conductivity"}})
+          << " of \"" << body.name << "\": "
+          << name_of(r.distribution,
+                     {{R::Distribution::lognormal, "lognormal"}, {R::Distribution::normal, "normal"}})
+          << ", coefficient of variation " << format_number(r.coefficient_of_variation) << ", "
+          << name_of(r.correlation,
+                     {{R::Correlation::exponential, "exponential"}, {R::Correlation::gaussian, "Gaussian"}})
+          << " correlation over ";
+      for (int d = 0; d < scene.dimension(); ++d)
+        out << (d > 0 ? " x " : "") << format_number(r.correlation_length[static_cast<std::size_t>(d)]);
+      out << " m, seed " << r.seed << '\n';
+    }
+}
+
+void explain_run_time(const Scene& scene, double step, std::ostream& out) {
+  const std::vector<StageTime> times = estimate_run_time(scene, step);
+  double total = 0;
+  bool water = false, factors = false;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    water = water || !scene.stages[i].moves();
+    if (!std::isnan(times[i].seconds())) total += times[i].seconds();
   }
-  return steps > 0 ? seconds(now() - start) / steps : 0;
+  for (const coupling::Measure& m : scene.measures)
+    factors = factors || m.kind == coupling::Measure::Kind::stability;
+  out << "run time      ";
+  if (total > 0)
+    out << (water || factors ? "at least " : "about ") << duration_text(total);
+  else
+    out << "not known before";
+  out << " with " << threads() << (threads() == 1 ? " thread" : " threads")
+      << ", from trials of each stage at the initial state, without output\n";
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const coupling::Stage& s = scene.stages[i];
+    out << "  " << s.name << ": ";
+    if (std::isnan(times[i].seconds())) {
+      out << "not known before: it does not run from the initial state\n";
+      continue;
+    }
+    const std::string one = (s.moves() ? " steps of " : " steps of the water of ") +
+                            digits(times[i].seconds_per_step * 1e3, 2) + " ms";
+    if (times[i].steps > 0)
+      out << duration_text(times[i].seconds()) << " for "
+          << (!s.moves()                                     ? "at least "
+              : s.mode == coupling::Stage::Mode::equilibrium ? "at most "
+                                                             : "about ")
+          << digits(times[i].steps, 3) << one;
+    else
+      out << "not known before:" << one << " until the flow is steady";
+    if (s.mode == coupling::Stage::Mode::quasi_static) out << ", searches for equilibrium besides";
+    out << '\n';
+  }
+  for (const coupling::Measure& m : scene.measures)
+    if (m.kind == coupling::Measure::Kind::stability)
+      out << "  measure " << m.name << ": a search for the factor of safety besides, about ten relaxations\n";
 }
 
 }  // namespace
@@ -110,6 +159,7 @@ int explain_command(const Arguments& a, std::ostream& out, std::ostream&) {
       << ", cells of " << format_number(scene.grid.cell) << " m\n";
   out << "particles     " << simulation.particles() << " in " << scene.bodies.size()
       << (scene.bodies.size() == 1 ? " body\n" : " bodies\n");
+  explain_random_fields(scene, out);
   const double all_cells = estimate_size(scene).cells;
   out << "cells         " << simulation.cells() << " stored of " << digits(all_cells, 6) << " in the grid\n";
   if (simulation.pressure_cells() > 0)
@@ -122,24 +172,16 @@ int explain_command(const Arguments& a, std::ostream& out, std::ostream&) {
       << ")\n";
   if (step > limit.dt) out << "warning       the step is beyond the limit of stability\n";
   out << "stages\n";
-  double steps = 0;
   for (const coupling::Stage& s : scene.stages) {
     const double n = s.moves() ? std::ceil(s.duration / step) : 0;
-    steps += n;
     out << "  " << s.name << ": " << stage_text(s, n) << '\n';
   }
   out << "off\n";
   for (const std::string& s : simulation.skipped()) out << "  " << s << '\n';
+  if (std::all_of(scene.bodies.begin(), scene.bodies.end(), [](const auto& b) { return b.random.empty(); }))
+    out << "  random fields: no body has one, so none is generated\n";
   for (const std::string& n : notes(scene)) out << "  " << n << '\n';
-  if (steps == 0) {
-    out << "run time      not known before: the water's steps follow its iterations\n";
-    return static_cast<int>(ExitCode::done);
-  }
-  // Last, because it changes the state.
-  const double seconds = trial(simulation);
-  out << "run time      about " << duration_text(seconds * steps) << " for " << digits(steps, 3)
-      << " steps of motion with " << threads() << (threads() == 1 ? " thread" : " threads")
-      << ", from a trial of " << digits(seconds * 1e3, 2) << " ms a step, without output\n";
+  explain_run_time(scene, step, out);
   return static_cast<int>(ExitCode::done);
 }
 

@@ -18,10 +18,13 @@
 #include <thread>
 #include <vector>
 
+#include "app/case.hpp"
 #include "app/measured.hpp"
 #include "app/program.hpp"
+#include "app/run_time.hpp"
 #include "app/ticker.hpp"
 #include "core/error.hpp"
+#include "core/threads.hpp"
 #include "io/checkpoint.hpp"
 
 namespace fs = std::filesystem;
@@ -247,6 +250,28 @@ TEST_CASE("explain tells the plan") {
         "(skeleton wave in saturated '", "settle: dynamic", "discrete elements", "run time      about"})
     CHECK_MESSAGE(r.out.find(part) != std::string::npos, part);
   CHECK(polder_program({"explain", kColumn, "--set", "formulation=dry"}).out.find("pore water  none") !=
+        std::string::npos);
+  CHECK(r.out.find("random fields: no body has one") != std::string::npos);
+  const std::string random = std::string(POLDER_SOURCE_DIR) + "/cases/footing-random/footing-random.toml";
+  const std::string out = polder_program({"explain", random, "--threads", "1"}).out;
+  CHECK(out.find("random        shear strength of \"ground\": lognormal, coefficient of variation 0.5, "
+                 "exponential correlation over 1 x 0.25 m, seed 1\n") != std::string::npos);
+  CHECK(out.find("random fields: no body has one") == std::string::npos);
+}
+
+TEST_CASE("the run time is that of each stage") {
+  // Relaxation, seepage of hours, a slide with unsaturated water.
+  polder::set_threads(1);
+  const std::string story = std::string(POLDER_SOURCE_DIR) + "/cases/levee-story/levee-story.toml";
+  const polder::coupling::Scene scene = polder::app::read_case(story, {"grid.cell=0.25"});
+  const std::vector<polder::app::StageTime> times = polder::app::estimate_run_time(scene, 3e-3);
+  REQUIRE(times.size() == 3);
+  CHECK(times[0].steps == doctest::Approx(10 / 3e-3).epsilon(1e-3));
+  CHECK(times[1].steps == 118);  // a hundredth of the duration each, after eighteen that grow
+  CHECK(times[2].seconds_per_step > 2 * times[0].seconds_per_step);
+  CHECK(times[1].seconds_per_step > 2 * times[0].seconds_per_step);
+  const std::string dam = std::string(POLDER_SOURCE_DIR) + "/cases/dam-seepage/dam-seepage.toml";
+  CHECK(polder_program({"explain", dam, "--threads", "1"}).out.find("run time      not known before") !=
         std::string::npos);
 }
 
