@@ -11,7 +11,7 @@ using Kind3 = WaterBoundary<3>::Kind;
 
 namespace {
 
-constexpr double kGamma = 9810, kConductivity = 2e-4;
+constexpr double kConductivity = 2e-4;
 
 template <int D>
 void flood(Scene<D>& s) {

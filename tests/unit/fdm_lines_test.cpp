@@ -13,31 +13,17 @@ using Kind2 = WaterBoundary<2>::Kind;
 
 namespace {
 
-constexpr double kGamma = 9810, kConductivity = 1e-4;
+constexpr double kConductivity = 1e-4;
 
-struct Ground : Scene<2> {
-  std::vector<int> soil;
-  std::vector<double> fraction;
-  Ground(Index<2> size, double h) : Scene<2>({0, 0}, size, h) {
+struct Ground : UnsaturatedScene<2> {
+  Ground(Index<2> size, double h) : UnsaturatedScene<2>({0, 0}, size, h) {
     fill_cells([](const auto&) { return 1.0; });
-    soil.assign(grid.slots(), 0);
-    fraction.assign(grid.slots(), 1);
-    cells_to(darcy_mobility, [](const auto&) { return kConductivity / kGamma; });
-  }
-  UnsaturatedStep step(double dt) const {
-    return {.dt = dt,
-            .porosity = porosity,
-            .volume_fraction = fraction,
-            .darcy_mobility = darcy_mobility,
-            .soil = soil};
+    set_conductivity(kConductivity);
   }
 };
 
 Soil<2> sand() {
-  Soil<2> s;
-  s.retention.model = Retention::Model::van_genuchten;
-  s.retention.alpha = 3, s.retention.n = 2.5, s.retention.residual = 0.1;
-  return s;
+  return van_genuchten<2>(3, 2.5);
 }
 
 }  // namespace
@@ -100,7 +86,7 @@ TEST_CASE("a sheet leaves no gap, wherever it lies") {
       CHECK(std::accumulate(blocked.begin(), blocked.end(), 0) < 40);
       UnsaturatedField<2> field(s.cells, water2(), {Soil<2>{}});
       field.refresh();
-      REQUIRE(field.steady(s.step(1)).converged);
+      REQUIRE(field.steady(s.unsaturated(1)).converged);
       CHECK(std::abs(field.discharge().boundary[1]) < 1e-12);
       // Each side rests under its own level.
       for (const auto& c : s.cells.cells()) {
@@ -148,7 +134,7 @@ TEST_CASE("a well takes its rate until its cell is as dry as it may get; the bal
     field.refresh();
     for (const auto& c : s.cells.cells())
       field.pressure()[c.slot] = kGamma * (2 - s.cells.centre(c.index)[1]);
-    REQUIRE(field.steady(s.step(100)).converged);
+    REQUIRE(field.steady(s.unsaturated(100)).converged);
     const Discharge& q = field.discharge();
     if (deep) {
       CHECK(q.well[0] == doctest::Approx(rate).epsilon(1e-9));
@@ -184,7 +170,7 @@ TEST_CASE("an injecting well gives its rate, up to the limiting pressure") {
     field.refresh();
     for (const auto& c : s.cells.cells())
       field.pressure()[c.slot] = kGamma * (1 - s.cells.centre(c.index)[1]);
-    REQUIRE(field.steady(s.step(100)).converged);
+    REQUIRE(field.steady(s.unsaturated(100)).converged);
     const double q = field.discharge().well[0], p = field.pressure()[s.grid.slot({10, 1})];
     if (limit > 0) {
       CHECK(q < 0);
@@ -210,7 +196,7 @@ TEST_CASE("a drain holds its pressure, takes nothing from dry soil, and counts w
     field.refresh();
     for (const auto& c : s.cells.cells())
       field.pressure()[c.slot] = kGamma * (level - s.cells.centre(c.index)[1]);
-    REQUIRE(field.steady(s.step(100)).converged);
+    REQUIRE(field.steady(s.unsaturated(100)).converged);
     const Discharge& q = field.discharge();
     if (level > 1) {
       CHECK(q.drain[0] > 1e-5);
@@ -224,7 +210,7 @@ TEST_CASE("a drain holds its pressure, takes nothing from dry soil, and counts w
     s.conditions.drains[0].conductance =
         0.2 * open / kGamma;  // clogged: a metre of head for a fifth of the flow
     s.cells.update(s.fill, s.conditions);
-    REQUIRE(field.steady(s.step(100)).converged);
+    REQUIRE(field.steady(s.unsaturated(100)).converged);
     CHECK(field.discharge().drain[0] > 0.05 * open);
     CHECK(field.discharge().drain[0] < 0.2 * open);
   }

@@ -1,5 +1,5 @@
-// A grid with all blocks stored, its water cells and pressure, filled from functions of position: for the
-// tests of fdm.
+// A grid with all blocks stored, its water cells and pressure, filled from functions of position, with the
+// soil of unsaturated flow besides: for the tests of fdm.
 #pragma once
 
 #include <cmath>
@@ -8,11 +8,13 @@
 #include <vector>
 
 #include "fdm/pressure_field.hpp"
+#include "fdm/unsaturated_field.hpp"
 #include "tests/unit/random.hpp"
 
 namespace polder::fdm::test {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+inline constexpr double kGamma = 9810;  // of water [N/m3]
 
 template <int D>
 struct Scene {
@@ -62,6 +64,43 @@ struct Scene {
     return {dt, velocity, mobility, porosity, darcy_mobility, chi};
   }
 };
+
+// With what unsaturated flow asks for: soil 0 everywhere, and how much of it counts to a cell.
+template <int D>
+struct UnsaturatedScene : Scene<D> {
+  std::vector<int> soil;
+  std::vector<double> fraction, compressibility;
+
+  UnsaturatedScene(Point<D> origin, Index<D> size, double h,
+                   Space space = D == 3 ? Space::three_d : Space::plane_strain)
+      : Scene<D>(origin, size, h, space), soil(this->grid.slots(), 0), fraction(this->grid.slots(), 1) {}
+
+  // Conductivity [m/s] everywhere.
+  void set_conductivity(double k) {
+    this->cells_to(this->darcy_mobility, [&](const auto&) { return k / kGamma; });
+  }
+  // Takes up fill and conditions.
+  void update() {
+    this->cells.update(this->fill, this->conditions);
+    soil_fraction<D>(this->cells, this->fill, fraction);
+  }
+  UnsaturatedStep unsaturated(double dt) const {
+    return {.dt = dt,
+            .porosity = this->porosity,
+            .volume_fraction = fraction,
+            .darcy_mobility = this->darcy_mobility,
+            .soil = soil,
+            .skeleton_compressibility = compressibility};
+  }
+};
+
+template <int D>
+Soil<D> van_genuchten(double alpha = 2, double n = 2, double residual = 0.1) {
+  Soil<D> s;
+  s.retention.model = Retention::Model::van_genuchten;
+  s.retention.alpha = alpha, s.retention.n = n, s.retention.residual = residual;
+  return s;
+}
 
 inline WaterProperties<2> water2(double bulk_modulus = kInfinity, double g = -9.81) {
   return {.density = 1000, .bulk_modulus = bulk_modulus, .gravity = {0, g}};

@@ -12,43 +12,8 @@ using namespace polder::fdm;
 using namespace polder::fdm::test;
 using Kind2 = WaterBoundary<2>::Kind;
 
-namespace {
-
-constexpr double kGamma = 9810;
-
-template <int D>
-Soil<D> loam() {
-  Soil<D> s;
-  s.retention.model = Retention::Model::van_genuchten;
-  s.retention.alpha = 3, s.retention.n = 2, s.retention.residual = 0.1;
-  return s;
-}
-
-template <int D>
-struct Ground : Scene<D> {
-  std::vector<int> soil;
-  std::vector<double> fraction;
-  using Scene<D>::Scene;
-  void update(double k) {
-    this->cells.update(this->fill, this->conditions);
-    this->cells_to(this->darcy_mobility, [&](const auto&) { return k / kGamma; });
-    soil.assign(this->grid.slots(), 0);
-    fraction.assign(this->grid.slots(), 0);
-    soil_fraction<D>(this->cells, this->fill, fraction);
-  }
-  UnsaturatedStep step(double dt) const {
-    return {.dt = dt,
-            .porosity = this->porosity,
-            .volume_fraction = fraction,
-            .darcy_mobility = this->darcy_mobility,
-            .soil = soil};
-  }
-};
-
-}  // namespace
-
 TEST_CASE("the first condition that fits names a face of the free surface; distances follow the fill") {
-  Ground<2> s({0, 0}, {12, 10}, 0.5);
+  UnsaturatedScene<2> s({0, 0}, {12, 10}, 0.5);
   s.fill_cells([](const auto& x) {
     return x[0] > 5 ? 0.0 : std::clamp((3.1 + (x[0] < 2 ? 1 : 0) - x[1]) / 0.5 + 0.5, 0.0, 1.0);
   });
@@ -58,7 +23,8 @@ TEST_CASE("the first condition that fits names a face of the free surface; dista
   crest.from[1] = 3.6;
   closed.to[0] = 3.0;
   s.conditions.boundaries = {crest, closed, level, boundary<2>(Kind2::pressure, 0, 0)};
-  s.update(1e-5);
+  s.set_conductivity(1e-5);
+  s.update();
   int count[4] = {0, 0, 0, 0};
   for (const auto& f : s.cells.boundary_faces()) {
     REQUIRE(f.boundary >= 0);
@@ -83,14 +49,15 @@ TEST_CASE("the first condition that fits names a face of the free surface; dista
 
 TEST_CASE("rain on a slope counts by its plan, whatever the staircase; evaporation too") {
   for (const double rate : {2e-7, -1e-7}) {
-    Ground<2> s({0, 0}, {40, 24}, 0.25);
+    UnsaturatedScene<2> s({0, 0}, {40, 24}, 0.25);
     s.fill_cells([](const auto& x) { return std::clamp((4.5 - 0.35 * x[0] - x[1]) / 0.25 + 0.5, 0.0, 1.0); });
     s.conditions.boundaries = {boundary<2>(Kind2::atmosphere, kFreeSurface, rate)};
-    s.update(1e-5);
-    UnsaturatedField<2> field(s.cells, water2(), {loam<2>()});
+    s.set_conductivity(1e-5);
+    s.update();
+    UnsaturatedField<2> field(s.cells, water2(), {van_genuchten<2>(3)});
     field.refresh();
     for (const auto& c : s.cells.cells()) field.pressure()[c.slot] = -1.0 * kGamma;
-    REQUIRE(field.solve(s.step(3600)).converged);
+    REQUIRE(field.solve(s.unsaturated(3600)).converged);
     CHECK(field.discharge().boundary[0] == doctest::Approx(-rate * 10).epsilon(1e-9));
     CHECK(field.discharge().surface == 0);
   }
@@ -127,18 +94,20 @@ TEST_CASE("the law of a complementary face between its limits, and on them") {
 }
 
 TEST_CASE("a seepage face that is not named lets water out and none in") {
-  Ground<2> s({0, 0}, {10, 12}, 0.25);
+  UnsaturatedScene<2> s({0, 0}, {10, 12}, 0.25);
   s.fill_below(2.0);
   s.conditions.boundaries = {boundary<2>(Kind2::pressure, 2, 2.5 * kGamma)};
-  s.update(1e-5);
-  UnsaturatedField<2> field(s.cells, water2(), {loam<2>()});
+  s.set_conductivity(1e-5);
+  s.update();
+  UnsaturatedField<2> field(s.cells, water2(), {van_genuchten<2>(3)});
   field.refresh();
   for (const auto& c : s.cells.cells()) field.pressure()[c.slot] = -kGamma;
-  REQUIRE(field.steady(s.step(100)).converged);
+  REQUIRE(field.steady(s.unsaturated(100)).converged);
   CHECK(field.discharge().surface == doctest::Approx(1e-5 * 0.5 / 2 * 2.5).epsilon(1e-5));
   s.conditions.boundaries[0].value = 1.0 * kGamma;
-  s.update(1e-5);
-  REQUIRE(field.steady(s.step(100)).converged);
+  s.set_conductivity(1e-5);
+  s.update();
+  REQUIRE(field.steady(s.unsaturated(100)).converged);
   CHECK(std::abs(field.discharge().surface) < 1e-18);
   for (const auto& c : s.cells.cells())
     CHECK(field.pressure()[c.slot] ==
@@ -151,7 +120,7 @@ TEST_CASE("infiltration is the same in the plane, about the axis and in space") 
     constexpr int D = std::tuple_size_v<std::remove_cvref_t<decltype(scene.centre(0))>>;
     field.refresh();
     for (const auto& c : scene.cells.cells()) field.pressure()[c.slot] = -2 * kGamma;
-    for (int i = 0; i < 20; ++i) REQUIRE(field.solve(scene.step(300)).converged);
+    for (int i = 0; i < 20; ++i) REQUIRE(field.solve(scene.unsaturated(300)).converged);
     for (const auto& c : scene.cells.cells()) {
       const std::size_t layer = c.index[D - 1];
       if (plane.size() <= layer) plane.resize(layer + 1, 0);
@@ -162,20 +131,22 @@ TEST_CASE("infiltration is the same in the plane, about the axis and in space") 
     }
     CHECK(std::abs(field.balance().defect()) < 1e-6 * field.balance().magnitude);
   };
-  Ground<2> a({0, 0}, {3, 16}, 0.1), b({0, 0}, {5, 16}, 0.1, Space::axisymmetric);
+  UnsaturatedScene<2> a({0, 0}, {3, 16}, 0.1), b({0, 0}, {5, 16}, 0.1, Space::axisymmetric);
   int number = 0;
-  for (Ground<2>* s : {&a, &b}) {
+  for (UnsaturatedScene<2>* s : {&a, &b}) {
     s->fill_below(1.5);
     s->conditions.boundaries = {boundary<2>(Kind2::atmosphere, kFreeSurface, 5e-6)};
-    s->update(1e-5);
-    UnsaturatedField<2> field(s->cells, water2(), {loam<2>()});
+    s->set_conductivity(1e-5);
+    s->update();
+    UnsaturatedField<2> field(s->cells, water2(), {van_genuchten<2>(3)});
     run(*s, field, number++);
   }
-  Ground<3> c({0, 0, 0}, {4, 3, 16}, 0.1);
+  UnsaturatedScene<3> c({0, 0, 0}, {4, 3, 16}, 0.1);
   c.fill_below(1.5);
   c.conditions.boundaries = {boundary<3>(WaterBoundary<3>::Kind::atmosphere, kFreeSurface, 5e-6)};
-  c.update(1e-5);
-  UnsaturatedField<3> field(c.cells, water3(), {loam<3>()});
+  c.set_conductivity(1e-5);
+  c.update();
+  UnsaturatedField<3> field(c.cells, water3(), {van_genuchten<3>(3)});
   run(c, field, 2);
   CHECK(std::set<double>(plane.begin(), plane.end()).size() > 10);
 }
@@ -184,7 +155,7 @@ TEST_CASE("state moves with the grid's numbering, and a new cell takes its neigh
   Grid<2> grid({0, 0}, {32, 16}, 0.1);
   WaterCells<2> cells(grid, Space::plane_strain);
   WaterConditions<2> conditions;
-  UnsaturatedField<2> field(cells, water2(), {loam<2>()});
+  UnsaturatedField<2> field(cells, water2(), {van_genuchten<2>(3)});
   const auto set = [&](const std::vector<int>& blocks, double right) {
     const bool renumbered = grid.activate(blocks);
     std::vector<double> fill(grid.slots(), 0);

@@ -12,36 +12,6 @@ using Kind2 = WaterBoundary<2>::Kind;
 
 namespace {
 
-constexpr double kGamma = 9810;
-
-template <int D>
-Soil<D> van_genuchten(double alpha = 2, double n = 2, double residual = 0.1) {
-  Soil<D> s;
-  s.retention.model = Retention::Model::van_genuchten;
-  s.retention.alpha = alpha, s.retention.n = n, s.retention.residual = residual;
-  return s;
-}
-
-template <int D>
-struct Soaked : Scene<D> {
-  std::vector<int> soil;
-  std::vector<double> fraction;
-  using Scene<D>::Scene;
-  void update() {
-    this->cells.update(this->fill, this->conditions);
-    soil.assign(this->grid.slots(), 0);
-    fraction.assign(this->grid.slots(), 0);
-    soil_fraction<D>(this->cells, this->fill, fraction);
-  }
-  UnsaturatedStep unsaturated(double dt) const {
-    return {.dt = dt,
-            .porosity = this->porosity,
-            .volume_fraction = fraction,
-            .darcy_mobility = this->darcy_mobility,
-            .soil = soil};
-  }
-};
-
 // A block under open water, moved about by a prescribed velocity: largest difference of the pressures of both
 // equations over the largest pressure, after 100 steps.
 template <int D>
@@ -49,7 +19,7 @@ double difference_from_saturated(const Retention& retention) {
   Index<D> size;
   size.fill(10);
   size[D - 1] = 8;
-  Soaked<D> s(Point<D>{}, size, 0.5);
+  UnsaturatedScene<D> s(Point<D>{}, size, 0.5);
   s.fill_below(3.6);  // the surface inside a layer of cells
   s.conditions.outside_level = 5;
   s.conditions.boundaries = {boundary<D>(WaterBoundary<D>::Kind::head, 0, 6.0)};
@@ -110,7 +80,7 @@ TEST_CASE("hydrostatic suction rests, wherever the surface and the water table l
       CAPTURE(i);
       CAPTURE(moving);
       const double table = 0.83;
-      Soaked<2> s({0, 0}, {6, 24}, 0.1);
+      UnsaturatedScene<2> s({0, 0}, {6, 24}, 0.1);
       s.fill_below(height + 0.1 * (i + 0.5) / 8);
       s.conditions.boundaries = {boundary<2>(Kind2::head, 0, table)};
       s.cells_to(s.darcy_mobility, [](const auto& x) { return (x[0] < 0.3 ? 1e-3 : 1e-7) / kGamma; });
@@ -137,7 +107,7 @@ TEST_CASE("hydrostatic suction rests, wherever the surface and the water table l
 
 TEST_CASE("soil fraction keeps the volume of soil") {
   for (const Space space : {Space::plane_strain, Space::axisymmetric}) {
-    Soaked<2> s({0, 0}, {20, 12}, 0.1, space);
+    UnsaturatedScene<2> s({0, 0}, {20, 12}, 0.1, space);
     s.fill_cells([](const auto& x) {
       return std::clamp((0.9 - 0.4 * x[0] + 0.1 * std::sin(9 * x[0]) - x[1]) / 0.1 + 0.5, 0.0, 1.0);
     });
@@ -155,7 +125,7 @@ TEST_CASE("soil fraction keeps the volume of soil") {
 }
 
 TEST_CASE("a step that does not converge changes nothing and says so") {
-  Soaked<2> s({0, 0}, {1, 20}, 0.05);
+  UnsaturatedScene<2> s({0, 0}, {1, 20}, 0.05);
   s.fill_cells([](const auto&) { return 1.0; });
   s.conditions.boundaries = {boundary<2>(Kind2::pressure, 3, 0)};
   s.cells_to(s.darcy_mobility, [](const auto&) { return 1e-4 / kGamma; });
@@ -181,7 +151,7 @@ TEST_CASE("a step that does not converge changes nothing and says so") {
 }
 
 TEST_CASE("the saturated equation refuses what only the unsaturated one knows") {
-  Soaked<2> s({0, 0}, {4, 4}, 0.5);
+  UnsaturatedScene<2> s({0, 0}, {4, 4}, 0.5);
   s.fill_cells([](const auto&) { return 1.0; });
   auto seepage = boundary<2>(Kind2::head, 0, 1.0), surface = boundary<2>(Kind2::pressure, kFreeSurface, 0);
   seepage.seepage_above = true;
@@ -196,7 +166,7 @@ TEST_CASE("the saturated equation refuses what only the unsaturated one knows") 
 
 TEST_CASE("flow along the layers and across them has the arithmetic and the harmonic mean, with anisotropy") {
   for (const bool along : {true, false}) {
-    Soaked<2> s({0, 0}, {8, 8}, 0.25);
+    UnsaturatedScene<2> s({0, 0}, {8, 8}, 0.25);
     s.fill_cells([](const auto&) { return 1.0; });
     const int axis = along ? 0 : 1;
     // Pressures that make the head 3 m and 2 m at the two ends.
@@ -223,7 +193,7 @@ TEST_CASE("the same bits for any number of threads, with either solver") {
     Reals first;
     for (const int n : {1, 2, 4}) {
       set_threads(n);
-      Soaked<2> s({0, 0}, {60, 48}, 0.05);
+      UnsaturatedScene<2> s({0, 0}, {60, 48}, 0.05);
       s.fill_cells([](const auto& x) { return in_levee(x[0] / 3, x[1] / 5) ? 1.0 : 0.0; });
       auto head = boundary<2>(Kind2::head, 0, 0.8), rain = boundary<2>(Kind2::atmosphere, kFreeSurface, 2e-5);
       s.conditions.boundaries = {head, rain};

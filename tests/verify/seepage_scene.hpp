@@ -12,11 +12,9 @@
 
 namespace polder::verify {
 
-inline constexpr double kGamma = 9810;  // of water [N/m3]
+using fdm::test::kGamma;
 
-struct SeepageScene : fdm::test::Scene<2> {
-  std::vector<int> soil;
-  std::vector<double> fraction, compressibility;
+struct SeepageScene : fdm::test::UnsaturatedScene<2> {
   fdm::UnsaturatedField<2> field;
   double time = 0, inflow = 0, stored = 0, defect = 0;  // sums over the steps: [s], [m3], [m3], [m3]
   std::vector<double> out;                              // of each named boundary [m3]
@@ -26,22 +24,15 @@ struct SeepageScene : fdm::test::Scene<2> {
   SeepageScene(Point<2> origin, Index<2> size, double h, std::vector<fdm::Soil<2>> soils,
                double bulk_modulus = fdm::test::kInfinity, fdm::SolverKind kind = fdm::SolverKind::automatic,
                double g = -9.81, Space space = Space::plane_strain)
-      : Scene<2>(origin, size, h, space),
+      : UnsaturatedScene<2>(origin, size, h, space),
         field(cells, fdm::test::water2(bulk_modulus, g), std::move(soils), kind) {
-    soil.assign(grid.slots(), 0);
-    fraction.assign(grid.slots(), 1);
     fill_cells([](const auto&) { return 1.0; });
   }
 
-  // Conductivity [m/s] everywhere.
-  void set_conductivity(double k) {
-    cells_to(darcy_mobility, [&](const auto&) { return k / kGamma; });
-  }
   // Takes up fill and conditions.
   void update() {
-    cells.update(fill, conditions);
+    UnsaturatedScene<2>::update();
     field.refresh();
-    fdm::soil_fraction<2>(cells, fill, fraction);
     out.resize(conditions.boundaries.size(), 0);
   }
   // Pressure from the head h(x) [m].
@@ -52,14 +43,6 @@ struct SeepageScene : fdm::test::Scene<2> {
     }
   }
   double head(const fdm::ActiveCell<2>& c) const { return field.pressure()[c.slot] / kGamma; }
-  fdm::UnsaturatedStep unsaturated(double dt) const {
-    return {.dt = dt,
-            .porosity = porosity,
-            .volume_fraction = fraction,
-            .darcy_mobility = darcy_mobility,
-            .soil = soil,
-            .skeleton_compressibility = compressibility};
-  }
 
   // One step; false and nothing changed if it does not converge.
   bool step(double dt) {
