@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/threads.hpp"
-#include "coupling/memory_state.hpp"
+#include "tests/verify/cut_run.hpp"
 #include "tests/verify/one_layer_rest.hpp"
 
 using namespace polder;
@@ -82,24 +82,7 @@ TEST_CASE("wet soil: a run cut at any step goes on with the same bits") {
     CHECK(whole.sorts > 3);
     for (int cut = 0; cut < 4; ++cut) {
       const long at = 1 + static_cast<long>(random() % (whole.steps - 1));
-      CAPTURE(at);
-      coupling::MemoryState state;
-      {
-        Simulation first(scene);
-        while (first.steps() < at) first.step();
-        state.save(first);
-      }
-      Simulation second(scene);
-      state.load(second);
-      coupling::MemoryState again;
-      again.save(second);
-      CHECK(again.differences(state).empty());
-      while (!second.finished()) second.step();
-      again.save(second);
-      const std::vector<std::string> different = again.differences(whole.state);
-      if (!different.empty()) MESSAGE("first difference: " << different.front());
-      CHECK(different.empty());
-      CHECK(second.steps() == whole.steps);
+      check_cut_run(scene, at, whole.state, whole.steps);
     }
   }
 }
@@ -112,9 +95,7 @@ TEST_CASE("wet soil: the same bits with 1, 2 and 4 threads") {
     for (const int n : {2, 4}) {
       CAPTURE(n);
       set_threads(n);
-      const std::vector<std::string> different = run(scene).state.differences(one.state);
-      if (!different.empty()) MESSAGE("first difference: " << different.front());
-      CHECK(different.empty());
+      check_same_bits(run(scene).state, one.state);
     }
   }
   set_threads(1);

@@ -7,8 +7,7 @@
 #include <cmath>
 
 #include "core/threads.hpp"
-#include "coupling/memory_state.hpp"
-#include "coupling/simulation.hpp"
+#include "tests/verify/cut_run.hpp"
 #include "tests/verify/one_layer_scenes.hpp"
 
 using namespace polder;
@@ -114,27 +113,14 @@ TEST_CASE("a levee from the rising of the water to its slide") {
   SUBCASE("cut and gone on with, the bits are the same") {
     for (const long at :
          {whole.flood_steps / 2, whole.flood_steps - 3, (whole.flood_steps + whole.steps) / 2}) {
-      CAPTURE(at);
-      coupling::MemoryState state, again;
-      Simulation first(scene);
-      while (first.steps() < at) first.step();
-      state.save(first);
-      Simulation second(scene);
-      state.load(second);
-      again.save(second);
-      CHECK(again.differences(state).empty());
-      while (!second.finished()) second.step();
-      again.save(second);
-      const std::vector<std::string> different = again.differences(whole.state);
-      if (!different.empty()) MESSAGE("first difference: " << different.front());
-      CHECK(different.empty());
+      check_cut_run(scene, at, whole.state, whole.steps);
     }
   }
   SUBCASE("with four threads the bits are the same") {
     set_threads(4);
     const Ended other = run(scene);
     set_threads(1);
-    CHECK(other.state.differences(whole.state).empty());
+    check_same_bits(other.state, whole.state);
   }
 }
 
