@@ -40,16 +40,7 @@ bool check_polygon(const Body& body, const std::string& key, Reader& reader) {
     reader.error(key, "empty body: its corners lie on one line", "corners that enclose an area");
     return false;
   }
-  if (const auto crossing = crossing_edges(p)) {
-    const auto edge = [&](std::size_t i) {
-      return std::to_string(i + 1) + "-" + std::to_string((i + 1) % p.size() + 1);
-    };
-    reader.error(key,
-                 "the edges " + edge(crossing->first) + " and " + edge(crossing->second) + " cross or touch",
-                 "a polygon whose edges meet at its corners only");
-    return false;
-  }
-  return true;
+  return check_edges(p, key, reader);
 }
 
 bool check_place(const Body& body, const std::string& key, Reader& reader) {
@@ -155,6 +146,19 @@ void check_random(const Body& body, std::size_t i, Reader& reader) {
 }
 
 }  // namespace
+
+bool check_edges(const Polygon& p, const std::string& key, Reader& reader) {
+  if (const auto crossing = crossing_edges(p)) {
+    const auto edge = [&](std::size_t i) {
+      return std::to_string(i + 1) + "-" + std::to_string((i + 1) % p.size() + 1);
+    };
+    reader.error(key,
+                 "the edges " + edge(crossing->first) + " and " + edge(crossing->second) + " cross or touch",
+                 "a polygon whose edges meet at its corners only");
+    return false;
+  }
+  return true;
+}
 
 void check_bodies(Reader& reader) {
   const Scene& scene = reader.scene;

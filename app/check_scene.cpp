@@ -125,16 +125,7 @@ void check_patch(const Boundary& b, const std::string& key, Reader& reader) {
     }
   Polygon plane;
   for (const Point<2>& x : patch.corners()) plane.push_back({x[0], x[1], 0});
-  if (const auto crossing = crossing_edges(plane)) {
-    const auto edge = [&](std::size_t i) {
-      return std::to_string(i + 1) + "-" + std::to_string((i + 1) % p.size() + 1);
-    };
-    reader.error(key,
-                 "the edges " + edge(crossing->first) + " and " + edge(crossing->second) + " cross or touch",
-                 "a polygon whose edges meet at its corners only");
-    return;
-  }
-  if (reader.failed("grid")) return;
+  if (!check_edges(plane, key, reader) || reader.failed("grid")) return;
   for (const Vector3& x : p) {
     if (is_in_grid(scene, x)) continue;
     reader.error(key, point_text(x, 3) + " lies outside the grid", "points of the grid");

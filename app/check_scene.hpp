@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/geometry.hpp"
 #include "app/reader.hpp"
 
 namespace polder::app {
@@ -33,6 +34,9 @@ bool check_corners(const std::vector<Corner>& outline, const std::string& key, R
     }
   return true;
 }
+
+// Whether no two edges of a plane outline cross or touch; reports the first two that do.
+bool check_edges(const Polygon& outline, const std::string& key, Reader& reader);
 
 // Things that are right but that a user may want to know, such as keys the formulation does not need.
 std::vector<std::string> notes(const coupling::Scene& scene);

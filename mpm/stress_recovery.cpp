@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cholesky.hpp"
 #include "core/threads.hpp"
 
 namespace polder::mpm {
@@ -20,28 +21,6 @@ struct CellMean {
   std::array<double, kStress> stress{};
   std::array<Point<D>, kStress> slope{};  // [Pa/m]
 };
-
-// x of A x = b for a symmetric positive definite matrix, by Cholesky's factors.
-template <int D>
-Point<D> solve(std::array<Point<D>, D> a, Point<D> b) {
-  for (int j = 0; j < D; ++j) {
-    for (int k = 0; k < j; ++k) a[j][j] -= a[j][k] * a[j][k];
-    a[j][j] = std::sqrt(a[j][j]);
-    for (int i = j + 1; i < D; ++i) {
-      for (int k = 0; k < j; ++k) a[i][j] -= a[i][k] * a[j][k];
-      a[i][j] /= a[j][j];
-    }
-  }
-  for (int i = 0; i < D; ++i) {
-    for (int k = 0; k < i; ++k) b[i] -= a[i][k] * b[k];
-    b[i] /= a[i][i];
-  }
-  for (int i = D - 1; i >= 0; --i) {
-    for (int k = i + 1; k < D; ++k) b[i] -= a[k][i] * b[k];
-    b[i] /= a[i][i];
-  }
-  return b;
-}
 
 template <int D>
 int home_of(const Grid<D>& grid, const ParticleSet<D>& set, int p) {
@@ -95,7 +74,7 @@ std::array<Reals, ParticleSet<D>::kStress> recover_stress(const Grid<D>& grid, c
       for (int k = 0; k < kStress; ++k)
         for (int i = 0; i < D; ++i) right[k][i] += weight / c.volume * r[i] * (other.stress[k] - c.stress[k]);
     }
-    for (int k = 0; k < kStress; ++k) c.slope[k] = solve<D>(matrix, right[k]);
+    for (int k = 0; k < kStress; ++k) c.slope[k] = solve_positive_definite(matrix, right[k]);
   });
   std::array<Reals, kStress> recovered;
   for (Reals& r : recovered) r.assign(set.slots(), 0.0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cholesky.hpp"
 #include "core/error.hpp"
 
 namespace polder::mpm {
@@ -69,23 +70,8 @@ std::array<double, 6> shortest_step(int n, const Matrix& j, const std::array<dou
       for (int q = 0; q < n; ++q) a[p][q] += j[k][p] * j[k][q];
     }
   for (int p = 0; p < n; ++p) trace += a[p][p];
-  for (int p = 0; p < n; ++p) {
-    a[p][p] += 1e-13 * trace + 1e-300;
-    for (int q = 0; q <= p; ++q) {
-      double sum = a[p][q];
-      for (int k = 0; k < q; ++k) sum -= a[p][k] * a[q][k];
-      a[p][q] = p == q ? std::sqrt(std::max(sum, 1e-300)) : sum / a[q][q];
-    }
-  }
-  for (int p = 0; p < n; ++p) {
-    for (int k = 0; k < p; ++k) x[p] -= a[p][k] * x[k];
-    x[p] /= a[p][p];
-  }
-  for (int p = n - 1; p >= 0; --p) {
-    for (int k = p + 1; k < n; ++k) x[p] -= a[k][p] * x[k];
-    x[p] /= a[p][p];
-  }
-  return x;
+  for (int p = 0; p < n; ++p) a[p][p] += 1e-13 * trace + 1e-300;
+  return solve_positive_definite(a, x, static_cast<std::size_t>(n));
 }
 
 double excess_pore_pressure(ElementTest test, const Components& initial, const Components& now) {
