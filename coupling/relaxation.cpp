@@ -24,7 +24,9 @@ constexpr double kRunawaySteps = 35;  // for each cell of height: five periods o
 // A motion that goes on at one speed makes twice the way in twice the steps, one that a constant force drives
 // four times.
 constexpr double kFastGrowth = 2.5;
-constexpr double kStubborn = 0.75;  // share that is left of an out-of-balance force that hardly falls
+// Share that is left of an out-of-balance force that hardly falls. While stress turns in soil that yields
+// everywhere, as in a column without cohesion, it falls by a sixth and more from one look back to the next.
+constexpr double kStubborn = 0.85;
 constexpr double kCreep = 0.5,
                  kStuck = 0.9;     // the same for a motion that goes on slowly, after twice the steps
 constexpr int kFewestSteps = 300;  // before a motion counts as running away

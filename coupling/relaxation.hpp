@@ -18,7 +18,7 @@
 // force ratio. Below the limit both die out; beyond it a force is left over that nothing balances, and the
 // soil goes on or gets faster. The motion counts as running away when in the second half of all steps r has
 // grown more than 2.5 times as much as in the quarter before while the least force ratio of that half is
-// above three quarters of the quarter's; or more than half as much while the force ratio has fallen by less
+// above 0.85 of the quarter's; or more than half as much while the force ratio has fallen by less
 // than a tenth. Both only after steps enough for the slowest elastic mode, the latter after twice as many.
 #pragma once
 
