@@ -57,6 +57,10 @@ class Comparison:
     def colour(self, run):
         return style.CYCLE[self.variants.index(run.variant) % len(style.CYCLE)]
 
+    def width(self, run):
+        """Wider below, so that a curve under another one still shows."""
+        return max(0.7, 1.7 - 0.7 * self.variants.index(run.variant))
+
     def line(self, run):
         return LINES[min(self.sizes.index(run.size), len(LINES) - 1)]
 
@@ -107,7 +111,8 @@ def draw_curves(comparison, axis, curves, title, quantity, unit, logarithmic, pa
     for (run, seconds, _), values in sorted(zip(curves, shown), key=lambda c: comparison.sizes.index(c[0][0].size), reverse=True):
         if logarithmic:
             values = np.where(values != 0, np.abs(values), np.nan)
-        axis.plot(seconds / divisor, values, color=comparison.colour(run), linestyle=comparison.line(run), linewidth=1.0)
+        axis.plot(seconds / divisor, values, color=comparison.colour(run), linestyle=comparison.line(run),
+                  linewidth=comparison.width(run))
         if run.failed and len(values):
             axis.plot(seconds[-1:] / divisor, values[-1:], "x", color=comparison.colour(run), markersize=5)
     if logarithmic:

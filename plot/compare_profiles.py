@@ -55,7 +55,7 @@ def draw_profile(comparison, axis, measure, path):
     quantity = readable(split_unit(measure["quantity"])[0])
     table = {"run": [], "time[s]": [], "coordinate[m]": [], f"{measure['quantity']}[{unit}]": []}
     upwards, name = False, ""
-    for run in sorted(comparison.runs, key=lambda r: r.size, reverse=True):  # the finest on top
+    for run in sorted(comparison.runs, key=lambda r: r.size, reverse=True):
         profile = Profile(run, measure)
         if not profile.times:
             continue
@@ -66,7 +66,7 @@ def draw_profile(comparison, axis, measure, path):
                 continue
             x, y = found[0], found[1] * factor
             axis.plot(*((y, x) if upwards else (x, y)), color=comparison.colour(run), linestyle=comparison.line(run),
-                      linewidth=0.9)
+                      linewidth=comparison.width(run))
             for key, values in zip(table, ([run.label] * len(x), [time] * len(x), x, y)):
                 table[key].extend(values)
     draw_references(axis, comparison, measure, upwards)

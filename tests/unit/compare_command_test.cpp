@@ -39,7 +39,9 @@ struct Outcome {
 };
 
 Outcome compare(const fs::path& folder, const std::string& file, const std::vector<std::string>& more) {
-  std::vector<std::string> words{"compare", file, "-o", folder.string(), "--threads", "1"};
+  // Frames on the disk take most of the time.
+  std::vector<std::string> words{"compare",   file, "-o",    folder.string(),
+                                 "--threads", "1",  "--set", "output.every=0"};
   words.insert(words.end(), more.begin(), more.end());
   Outcome o{};
   o.code = polder_program(words, &o.err);
@@ -382,7 +384,7 @@ TEST_CASE("a run that was stopped goes on to the same numbers") {
   REQUIRE(whole.code == 0);
   const std::string name = whole.json.at("runs")[1].at("folder");
   REQUIRE(polder_program({"run", kColumn, "-o", (scratch.path / "b" / name).string(), "--quiet", "--until",
-                          "0.02"}) == 0);
+                          "0.02", "--set", "output.every=0"}) == 0);
   const Outcome parts = compare(scratch.path / "b", kColumn, words);
   REQUIRE_MESSAGE(parts.code == 0, parts.err);
   CHECK(parts.json.at("measures") == whole.json.at("measures"));
@@ -454,7 +456,7 @@ TEST_CASE("runs made earlier") {
   CHECK(fs::exists(scratch.path / "again" / again.json.at("runs")[0].at("folder").get<std::string>()));
 
   // Runs with more measures and other output belong to the family of the same scene; other soil does not.
-  const std::string fine = run("fine", {"grid.cell=0.05", "output.every=0"}),
+  const std::string fine = run("fine", {"grid.cell=0.05", "output.every=0.01"}),
                     same = run("one-layer-again", {}), soft = run("soft", {"material.sand.young=5e6"});
   const Outcome o = compare_runs("mixed", {(family / "one-layer_cell0.2_courant0.5").string(), fine + "/",
                                            (family / "one-layer_cell0.1_courant0.5").string(), soft, same});
