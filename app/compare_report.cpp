@@ -15,8 +15,11 @@ std::string number(double v, int n = 3) {
   return std::isnan(v) ? "-" : digits(v, n);
 }
 
+constexpr double kMostShare = 10;  // beyond which it does not matter how much
+
 std::string percent(double share) {
-  return std::isnan(share) ? "-" : digits(100 * share, 2) + " %";
+  if (std::isnan(share)) return "-";
+  return share > kMostShare ? "over " + digits(100 * kMostShare, 4) + " %" : digits(100 * share, 2) + " %";
 }
 
 std::string index(std::size_t run) {
@@ -99,6 +102,19 @@ std::string balances_table(const Comparison& c) {
                     expectations_text(run)});
   }
   return markdown_table(rows);
+}
+
+std::string missed_lines(const Comparison& c) {
+  std::string text;
+  for (std::size_t i = 0; i < c.runs.size(); ++i) {
+    std::string missed;
+    for (const ExpectationResult& e : c.runs[i].run.expectations)
+      if (!e.pass)
+        missed += (missed.empty() ? "" : ", ") + e.measure + " (" + e.norm +
+                  (e.when.empty() ? "" : " " + e.when) + ")";
+    if (!missed.empty()) text += "- " + row_name(c, i) + " missed: " + missed + "\n";
+  }
+  return text.empty() ? text : "\n" + text;
 }
 
 std::string last_values_table(const Comparison& c) {
@@ -316,7 +332,7 @@ std::string compare_text(const Comparison& c) {
   if (!c.case_file.empty()) text += "`" + c.case_file + "`\n\n";
   text += "## Runs\n\n" + runs_table(c) + remarks(c);
   text += "\n## Balances and noise\n\nLargest relative errors over the run, energy at its end.\n\n" +
-          balances_table(c);
+          balances_table(c) + missed_lines(c);
   text += "\n## Last values\n\n" + last_values_table(c);
   if (const std::string table = errors_table(c); !table.empty())
     text +=

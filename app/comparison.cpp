@@ -33,6 +33,16 @@ bool same_quantity(const Measure& a, const Measure& b) {
   return a.name == b.name && a.kind == b.kind && a.quantity == b.quantity;
 }
 
+// Whether a run has stages other than searches for equilibrium, which tell of height and speed only how they
+// were found.
+bool passes_time(const Comparison& c) {
+  return std::any_of(c.runs.begin(), c.runs.end(), [](const ComparedRun& r) {
+    const auto& stages = r.run.scene.stages;
+    return std::any_of(stages.begin(), stages.end(),
+                       [](const coupling::Stage& s) { return s.mode != coupling::Stage::Mode::equilibrium; });
+  });
+}
+
 std::vector<ComparedMeasure> candidates(const Comparison& c) {
   std::vector<ComparedMeasure> list;
   const auto add = [&](const Measure& m, bool asked) {
@@ -44,6 +54,7 @@ std::vector<ComparedMeasure> candidates(const Comparison& c) {
   for (const ComparedRun& r : c.runs)
     for (const Measure& m : r.run.scene.measures)
       if (m.kind != Measure::Kind::history || !is_audit(m.quantity)) add(m, true);
+  if (!passes_time(c)) return list;
   for (const std::string& name : usual_columns()) {
     const bool asked = std::any_of(list.begin(), list.end(), [&](const ComparedMeasure& m) {
       return m.measure.kind == Measure::Kind::history && m.measure.quantity == name;

@@ -355,6 +355,27 @@ TEST_CASE("times count from the end of the search for equilibrium") {
         doctest::Approx(app::difference(traces[0], traces[1]).l2 / extremes.range()));
 }
 
+TEST_CASE("factors of safety of a case without motion") {
+  const Scratch scratch("compare_test");
+  const Outcome o = compare(
+      scratch.path, std::string(POLDER_SOURCE_DIR) + "/cases/slope-acads/slope-acads.toml",
+      {"--formulation", "dry", "--variant", "weak:material.soil.friction=15", "--cell", "4", "--cell", "2"});
+  REQUIRE_MESSAGE(o.code == 0, o.err);
+  REQUIRE(o.json.at("measures").size() == 1);  // how the equilibrium was found is not compared
+  const auto& factor = measure(o.json, "factor");
+  std::vector<double> found;
+  for (const auto& run : o.json.at("runs")) found.push_back(run.at("measures").at("factor"));
+  CHECK(found[1] > found[3]);
+  // One number, as a share of the largest.
+  CHECK(factor.at("scale") == found[1]);
+  CHECK(factor.at("errors")[0].at("l2").get<double>() ==
+        doctest::Approx(std::abs(found[1] - found[0]) / found[1]));
+  CHECK(factor.at("differences")[0].at("l2").get<double>() ==
+        doctest::Approx((found[1] - found[3]) / found[1]));
+  // The case expects a factor of its own cells; what is missed is named.
+  CHECK(text_of(scratch.path / "compare.md").find("weak, cell 2 m missed: factor") != std::string::npos);
+}
+
 TEST_CASE("a run that fails is reported, the others go on") {
   const Scratch scratch("compare_test");
   const std::vector<std::string> words{"--variant",

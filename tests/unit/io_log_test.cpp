@@ -16,11 +16,12 @@ namespace {
 
 // A log that writes into files, with a clock that the test moves.
 struct Bench {
-  explicit Bench(bool is_terminal, bool quiet = false)
+  explicit Bench(bool is_terminal, bool quiet = false, bool progress_only = false)
       : screen(std::fopen((folder / "screen").c_str(), "w")) {
     Log::Options options;
     options.file = folder / "log.txt";
     options.quiet = quiet;
+    options.progress_only = progress_only;
     options.terminal = screen;
     options.is_terminal = is_terminal;
     options.clock = [this] { return now; };
@@ -95,6 +96,17 @@ TEST_CASE("a quiet run still has its progress in the file") {
   run(bench, 12.0);
   CHECK(bench.shown().empty());
   CHECK(count(bench.logged(), "flood") == 1);
+}
+
+TEST_CASE("with progress only, the screen has that and errors, the file everything") {
+  Bench bench(false, false, true);
+  bench.log->line("settings");
+  run(bench, 12.0);
+  bench.log->error("broken");
+  CHECK(count(bench.shown(), "flood") == 1);
+  CHECK(bench.shown().find("settings") == std::string::npos);
+  CHECK(bench.shown().ends_with("error: broken\n"));
+  CHECK(bench.logged().starts_with("settings\nflood"));
 }
 
 TEST_CASE("another stage starts with speeds of its own") {
