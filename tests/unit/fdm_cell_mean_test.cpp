@@ -16,8 +16,6 @@ using Model = Retention::Model;
 
 namespace {
 
-constexpr double kGamma = 9810;
-
 std::vector<Retention> curves() {
   Retention vg, clay, bc, gardner, haverkamp, table;
   vg.model = Model::van_genuchten, vg.alpha = 14.5, vg.n = 2.68, vg.residual = 0.1;

@@ -13,7 +13,7 @@ using namespace polder::fdm::test;
 
 namespace {
 
-constexpr double kGamma = 9810, kPi = std::numbers::pi;
+constexpr double kPi = std::numbers::pi;
 
 // Distance of the surface from a vertical face: integral of pi / ln(R/s), s = exp(u), by the midpoint rule.
 double vertical_distance(double length_scale, double s) {
