@@ -268,6 +268,7 @@ std::unique_ptr<World<D>> build_world(const Scene& scene) {
       world->pore_water->unsaturated =
           std::make_unique<UnsaturatedWater<D>>(world->pore_water->cells, water, soils_of<D>(scene));
     world->pore_water->pressure.set_tolerance(scene.numerics.solver_tolerance);
+    world->pore_water->compressible = formulation->pressure == PressureMethod::compressible;
     set_saturation(*world);
   }
   if (!scene.unsaturated()) set_initial_stress(*world);  // else when the suction is known

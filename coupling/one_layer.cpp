@@ -5,6 +5,7 @@
 
 #include "core/error.hpp"
 #include "core/threads.hpp"
+#include "coupling/explicit_water.hpp"
 #include "coupling/initial_state.hpp"
 #include "coupling/stopwatch.hpp"
 #include "coupling/unsaturated.hpp"
@@ -239,14 +240,17 @@ mpm::MoveResult step_one_layer(World<D>& world, const StepInput& in, long step) 
       const double* s = &sums[static_cast<std::size_t>(i) * 8];
       w.mobility[i] = s[0] > skeleton.mass_floor() ? in.dt * s[mpm::Transfer<D>::kVolume] / s[0] : 0.0;
     });
-    {
+    if (w.compressible) {
+      Stopwatch watch(w.wall_seconds);
+      advance_water(world, in.dt, strain_velocity);
+    } else {
       Stopwatch watch(w.wall_seconds);
       solve_pressure(world, in.dt, strain_velocity);
       node_gradient(w, w.unsaturated ? w.unsaturated->field.increment() : w.pressure.increment(),
                     fdm::BoundaryValues::homogeneous, w.node_gradient);
       pressure_push(skeleton, w.node_gradient, in.dt, w.correction);
     }
-    skeleton.correct(end, in.dt, w.correction);
+    if (!w.compressible) skeleton.correct(end, in.dt, w.correction);
     if (w.unsaturated) update_suction(world);
   }
   const mpm::MoveResult moved = skeleton.gather(in.time, in.dt);

@@ -1,4 +1,5 @@
-// Pore water in the grid's cells (one-layer formulation): what a wet world owns besides its skeleton.
+// Pore water in the grid's cells (formulations one-layer and higo): what a wet world owns besides its
+// skeleton.
 //
 // A scene without retention curves is saturated wherever it is wet: `pressure` is solved for, `unsaturated`
 // is not there and no curve is ever evaluated. With retention curves `unsaturated` is solved for instead; all
@@ -50,6 +51,10 @@ struct PoreWater {
   double wall_seconds = 0;            // spent on the water's part of the steps
   double outflow = 0;                 // water that has left by Darcy flow [m3]
   double storage = 0;                 // taken up by compression of water and (rigid) skeleton [m3]
+  // Pressure from the bulk modulus of the water, explicitly (explicit_water.hpp), instead of by projection.
+  bool compressible = false;
+  Reals specific_volume;                 // of the mixture in the cells, 1 / rho [m3/kg]
+  fdm::ExplicitLimit explicit_limit{0};  // of the last explicit step; 0: not known
 
   // Pore pressure of the cells [Pa], negative where there is suction.
   const Reals& pore_pressure() const {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/error.hpp"
+#include "coupling/explicit_water.hpp"
 #include "coupling/initial_state.hpp"
 #include "coupling/one_layer.hpp"
 #include "coupling/simulation_run.hpp"
@@ -74,8 +75,18 @@ double Simulation::Run<D>::courant_share() const {
 }
 
 template <int D>
+std::pair<double, const char*> Simulation::Run<D>::chosen_step(double skeleton_speed) const {
+  const double h = world->skeleton.grid().spacing();
+  const bool still = finished() || !present().water_flows;
+  if (!world->pore_water || !world->pore_water->compressible || still)
+    return {courant_share() * h / skeleton_speed, "skeleton wave"};
+  const MotionLimit limit = combined_limit(explicit_limit(*world, time), h, skeleton_speed);
+  return {courant_share() * limit.dt, limit.reason};
+}
+
+template <int D>
 double Simulation::Run<D>::automatic_step() const {
-  return courant_share() * world->skeleton.grid().spacing() / world->skeleton.wave_speed(world->materials);
+  return chosen_step(world->skeleton.wave_speed(world->materials)).first;
 }
 
 template <int D>
@@ -120,9 +131,10 @@ void Simulation::Run<D>::step_motion() {
   const double h = skeleton.grid().spacing();
   if (steps % kWaveInterval == 0) wave_speed = skeleton.wave_speed(world->materials);
 
-  // Time step: a share of the skeleton wave's limit; never more than a share of a cell for the fastest point.
-  double step_size = courant_share() * h / wave_speed;
-  reason = "skeleton wave";
+  // Time step: a share of the limit of the waves; never more than a share of a cell for the fastest point.
+  const auto chosen = chosen_step(wave_speed);
+  double step_size = chosen.first;
+  reason = chosen.second;
   if (scene.numerics.time_step) step_size = *scene.numerics.time_step, reason = "fixed by the case";
   if (speed * step_size > kSpeedShare * h) step_size = kSpeedShare * h / speed, reason = "particle speed";
   const double stage_end = stage_start + stage_spec.duration, mark = next_mark(stage_end);
@@ -206,6 +218,7 @@ void Simulation::Run<D>::end_stage(const std::string& by) {
     const PoreWater<D>& water = *world->pore_water;
     initial_water_volume = audit->totals(*world).water_volume + water.outflow + water.storage;
   }
+  if (world->pore_water) world->pore_water->explicit_limit.dt = 0;
   ++stage;
   stage_start = time;
   stage_steps = 0;
@@ -286,6 +299,11 @@ void Simulation::Run<D>::visit_water(StateVisitor& v) {
       unsaturated ? unsaturated->field.pressure_cells() : water.pressure.pressure_cells();
   v.reals("pore_pressure", pressure), v.integers("pressure_cells", cells);
   v.number("outflow", water.outflow), v.number("storage", water.storage);
+  if (water.compressible) {
+    std::int64_t darcy = water.explicit_limit.darcy;
+    v.number("explicit_limit", water.explicit_limit.dt), v.count("explicit_limit_darcy", darcy);
+    water.explicit_limit.darcy = darcy != 0;
+  }
   if (unsaturated) {
     saturation = unsaturated->field.saturation();
     points = unsaturated->point_saturation, active = unsaturated->was_active, travel = unsaturated->travel;
@@ -375,8 +393,9 @@ StepLimit Simulation::step_limit() const {
   if (!run_->limit) {
     const StabilityLimit found = find_stability_limit(run_->scene);
     char text[160];
-    std::snprintf(text, sizeof text, "skeleton wave in %s'%s', %.3g of cell over wave speed",
-                  found.with_water ? "saturated " : "", found.material.c_str(), found.courant_number);
+    std::snprintf(text, sizeof text, "%s in %s'%s', %.3g of cell over skeleton wave speed",
+                  found.mechanism.c_str(), found.with_water ? "saturated " : "", found.material.c_str(),
+                  found.courant_number);
     run_->limit = StepLimit{found.dt, text};
   }
   return *run_->limit;

@@ -74,6 +74,8 @@ struct Simulation::Run final : Simulation::Base {
   explicit Run(const Scene& s);
   void step() override;
   double courant_share() const;
+  // Share of the limits that the step is chosen from, and what sets it (explicit_water.hpp).
+  std::pair<double, const char*> chosen_step(double skeleton_speed) const;
   double automatic_step() const override;
   std::vector<Column> history() const override;
   long particles() const override;

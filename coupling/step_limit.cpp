@@ -6,6 +6,7 @@
 
 #include "coupling/audit.hpp"
 #include "coupling/body_shape.hpp"
+#include "coupling/explicit_water.hpp"
 #include "coupling/initial_state.hpp"
 #include "coupling/one_layer.hpp"
 #include "coupling/world.hpp"
@@ -85,6 +86,13 @@ class Patch {
 
   double wave_speed() const { return wave_speed_; }
 
+  // By the formulas of a uniform grid: where to begin the search, and what it is about.
+  MotionLimit expected() {
+    const double h = world_->skeleton.grid().spacing();
+    if (!world_->pore_water || !world_->pore_water->compressible) return {h / wave_speed_, "skeleton wave"};
+    return combined_limit(explicit_limit(*world_, 0.0), h, wave_speed_);
+  }
+
   bool stable(double dt) {
     disturb();
     double early = 0;
@@ -135,9 +143,10 @@ class Patch {
 };
 
 template <int D>
-double limit_of(const Scene& scene, double& courant_number) {
+StabilityLimit limit_of(const Scene& scene) {
   Patch<D> patch(scene);
-  const double unit = scene.grid.cell / patch.wave_speed();
+  const MotionLimit expected = patch.expected();
+  const double unit = expected.dt;
   double low = unit, high = unit;
   if (patch.stable(unit)) do
       low = high, high *= 1.5;
@@ -149,8 +158,11 @@ double limit_of(const Scene& scene, double& courant_number) {
     const double middle = std::sqrt(low * high);
     (patch.stable(middle) ? low : high) = middle;
   }
-  courant_number = low / unit;
-  return low;
+  StabilityLimit limit;
+  limit.dt = low;
+  limit.mechanism = expected.reason;
+  limit.courant_number = low * patch.wave_speed() / scene.grid.cell;
+  return limit;
 }
 
 template <int D>
@@ -166,9 +178,9 @@ StabilityLimit find(const Scene& scene) {
     const bool porous = water && m.porosity > 0;
     for (bool wet : {false, true}) {
       if (wet ? !porous : porous && scene.water.phreatic.empty() && !scene.unsaturated()) continue;
-      double courant_number = 0;
-      const double dt = limit_of<D>(patch_of<D>(scene, body, wet), courant_number);
-      if (limit.dt == 0 || dt < limit.dt) limit = {dt, m.name, wet, courant_number};
+      StabilityLimit found = limit_of<D>(patch_of<D>(scene, body, wet));
+      found.material = m.name, found.with_water = wet;
+      if (limit.dt == 0 || found.dt < limit.dt) limit = std::move(found);
     }
   }
   return limit;

@@ -18,6 +18,7 @@ struct StabilityLimit {
   double dt = 0;              // largest stable step [s]
   std::string material;       // that sets it
   bool with_water = false;    // in saturated soil, or in dry soil or soil above the phreatic line
+  std::string mechanism;      // which wave, or Darcy flow
   double courant_number = 0;  // dt times the speed of the drained compression wave over the cell [-]
 };
 

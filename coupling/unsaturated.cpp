@@ -312,17 +312,13 @@ void set_unsaturated_state(World<D>& world) {
   update_unsaturated_cells(world);
 }
 
+namespace {
+
+// Gives what a step of the cells has changed to the points; u.change is the saturation before it.
 template <int D>
-fdm::StepReport flow_unsaturated(World<D>& world, const FlowInput& in) {
+void pass_on(World<D>& world, const FlowInput& in) {
   PoreWater<D>& w = *world.pore_water;
   UnsaturatedWater<D>& u = *w.unsaturated;
-  fdm::UnsaturatedStep step = make_step(world, in.dt);
-  step.velocity = in.velocity, step.mobility = in.mobility, step.pressure_gradient = in.pressure_gradient;
-  if (in.velocity.empty()) step.skeleton_compressibility = compressibility(world);
-  u.change = u.field.saturation();
-  u.field.set_tolerance(world.scene.numerics.solver_tolerance * (in.velocity.empty() ? 1 : kMotionFactor));
-  const fdm::StepReport report = u.field.solve(step);
-  if (!report.converged) return report;
   const double per_cell = in.dt / world.skeleton.grid().spacing() / ipow(2, D);
   parallel_for(w.cells.count(), [&](int c) {
     const fdm::ActiveCell<D>& cell = w.cells.cells()[c];
@@ -345,13 +341,48 @@ fdm::StepReport flow_unsaturated(World<D>& world, const FlowInput& in) {
     u.point_saturation[i] += u.change[i];
   });
   find_pushing_pressure(world);
-  w.outflow += in.dt * w.discharge().total();
+  w.outflow += in.dt * u.field.balance().outflow;
   // What the cells took up beyond the filling of pores, which the points have got.
   double filled = 0;
   for (const fdm::ActiveCell<D>& cell : w.cells.cells())
     filled += w.porosity[cell.slot] * u.volume_fraction[cell.slot] * cell.volume * u.change[cell.slot];
   w.storage += in.dt * u.field.balance().storage - filled;
+}
+
+template <int D>
+fdm::UnsaturatedStep moving_step(const World<D>& world, const FlowInput& in) {
+  fdm::UnsaturatedStep step = make_step(world, in.dt);
+  step.velocity = in.velocity, step.mobility = in.mobility, step.pressure_gradient = in.pressure_gradient;
+  return step;
+}
+
+}  // namespace
+
+template <int D>
+fdm::StepReport flow_unsaturated(World<D>& world, const FlowInput& in) {
+  UnsaturatedWater<D>& u = *world.pore_water->unsaturated;
+  fdm::UnsaturatedStep step = moving_step(world, in);
+  if (in.velocity.empty()) step.skeleton_compressibility = compressibility(world);
+  u.change = u.field.saturation();
+  u.field.set_tolerance(world.scene.numerics.solver_tolerance * (in.velocity.empty() ? 1 : kMotionFactor));
+  const fdm::StepReport report = u.field.solve(step);
+  if (report.converged) pass_on(world, in);
   return report;
+}
+
+template <int D>
+void flow_unsaturated_explicitly(World<D>& world, const FlowInput& in) {
+  PoreWater<D>& w = *world.pore_water;
+  UnsaturatedWater<D>& u = *w.unsaturated;
+  u.change = u.field.saturation();
+  w.explicit_limit = u.field.advance_explicitly(moving_step(world, in), w.specific_volume);
+  pass_on(world, in);
+}
+
+template <int D>
+fdm::ExplicitLimit unsaturated_explicit_limit(World<D>& world) {
+  const PoreWater<D>& w = *world.pore_water;
+  return w.unsaturated->field.explicit_limit(make_step(world, 1.0), w.specific_volume);
 }
 
 template <int D>
@@ -400,6 +431,8 @@ double pushing_pressure_at(const World<D>& world, const ParticleSet<D>& set, int
   template void update_unsaturated_cells<D>(World<D>&);                      \
   template void set_unsaturated_state<D>(World<D>&);                         \
   template fdm::StepReport flow_unsaturated<D>(World<D>&, const FlowInput&); \
+  template void flow_unsaturated_explicitly<D>(World<D>&, const FlowInput&); \
+  template fdm::ExplicitLimit unsaturated_explicit_limit<D>(World<D>&);      \
   template void update_suction<D>(World<D>&);                                \
   template double pushing_pressure_at<D>(const World<D>&, const ParticleSet<D>&, int);
 POLDER_INSTANTIATE(2)

@@ -39,6 +39,12 @@ struct FlowInput {
 };
 template <int D>
 fdm::StepReport flow_unsaturated(World<D>& world, const FlowInput& in);
+// The same by an explicit step with a moving skeleton, after PoreWater::specific_volume is up to date; leaves
+// its limit in PoreWater::explicit_limit. And that limit alone.
+template <int D>
+void flow_unsaturated_explicitly(World<D>& world, const FlowInput& in);
+template <int D>
+fdm::ExplicitLimit unsaturated_explicit_limit(World<D>& world);
 
 // Suction stress and capillary factor of the points from the present state of the cells.
 template <int D>

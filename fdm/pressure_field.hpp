@@ -27,6 +27,7 @@
 
 #include "core/aligned.hpp"
 #include "fdm/cell_operators.hpp"
+#include "fdm/explicit_pressure.hpp"
 #include "fdm/linear_system.hpp"
 #include "fdm/node_gradient.hpp"
 #include "fdm/water_cells.hpp"
@@ -106,6 +107,13 @@ class PressureField {
   // basin is held at zero.
   SolveReport solve(const PressureStep& step);
 
+  // The same balance without a linear system (fdm/explicit_pressure.hpp): the flow is that of the pressure
+  // before the step, the velocity is final and needs no correction. For steps up to explicit_limit().
+  void advance(const PressureStep& step);
+  // Longest stable step of advance() with these properties of the cells. specific_volume: of the mixture, 1 /
+  // rho [m3/kg].
+  ExplicitLimit explicit_limit(const PressureStep& step, std::span<const double> specific_volume);
+
   // Steady Darcy flow through a resting skeleton under the present conditions; sets the pressure. A basin
   // without any prescribed pressure gets the pressure zero in its first cell.
   SolveReport steady(std::span<const double> darcy_mobility);
@@ -166,6 +174,7 @@ class PressureField {
   int pinned_ = 0;
   Discharge discharge_;
   WaterBalance balance_;
+  Reals limit_storage_, limit_darcy_, limit_inertia_;  // see ExplicitRates; only where it is asked for
 };
 
 extern template class PressureField<2>;

@@ -21,7 +21,7 @@
 // saturated under suction as well: p+ = p there.
 //
 // Iteration: fdm/unsaturated_field.cpp and unsaturated_newton.cpp. A step that does not converge changes
-// nothing and says so.
+// nothing and says so. Explicit steps: fdm/explicit_step.cpp.
 //
 // Pressures [Pa], compression positive; zero in inactive cells. Discharges as in fdm/pressure_field.hpp.
 #pragma once
@@ -139,6 +139,11 @@ class UnsaturatedField {
   double full_suction(int soil) const { return full_suction_[soil]; }
 
   StepReport solve(const UnsaturatedStep& step);
+  // An explicit step with a moving skeleton (fdm/explicit_step.cpp), without a linear system; the velocity is
+  // final and needs no correction. Returns the longest stable step of the state before it. specific_volume:
+  // of the mixture in the cells, 1 / rho [m3/kg].
+  ExplicitLimit advance_explicitly(const UnsaturatedStep& step, std::span<const double> specific_volume);
+  ExplicitLimit explicit_limit(const UnsaturatedStep& step, std::span<const double> specific_volume);
   // Steady flow through a resting skeleton from the present state, by implicit steps of growing length
   // (step.dt is the first one) until storage takes no part; a closed basin keeps its water.
   StepReport steady(const UnsaturatedStep& step);
@@ -202,6 +207,8 @@ class UnsaturatedField {
   void multiply(std::span<const double> v, std::span<double> out);
   bool newton_step(Residual& residual, double reduction, StepReport& report);
   void accept();
+  ExplicitLimit limit_of_assembled(const UnsaturatedStep& step, std::span<const double> specific_volume);
+  double stored_pressure(int c, double inflow, double drawn) const;
   void update_gradient_faces();
   bool wet(int cell) const { return p_now_[cell] > -fringe_[cell]; }
   // The momentum interpolation acts between cells that were full at the start of the step: it must not come
@@ -277,7 +284,8 @@ class UnsaturatedField {
 
   Discharge discharge_;
   WaterBalance balance_;
-  std::vector<BoundaryFace<D>> gradient_faces_;  // with the positive part of the pressure
+  std::vector<BoundaryFace<D>> gradient_faces_;        // with the positive part of the pressure
+  Reals limit_storage_, limit_darcy_, limit_inertia_;  // see ExplicitRates; only in explicit steps
 };
 
 extern template class UnsaturatedField<2>;

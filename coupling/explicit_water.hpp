@@ -1,0 +1,29 @@
+// The water's part of a step where the pore pressure follows explicitly from the bulk modulus of the water
+// (formulation higo: Higo et al. 2010, 2015) instead of from a projection: the same cells, faces and
+// boundaries, no linear system and no correction of the velocities, and a step that the water limits.
+#pragma once
+
+#include "coupling/world.hpp"
+
+namespace polder::coupling {
+
+// Pressure at the end of the step from the velocities that strain the soil in it, and the limit of the next
+// step. w.mobility and w.node_gradient belong to the step.
+template <int D>
+void advance_water(World<D>& world, double dt, const Reals& strain_velocity);
+
+// Longest stable step of the water [s]: that of the last step, or found now, at this time [s], where the last
+// step was none of advance_water's.
+template <int D>
+const fdm::ExplicitLimit& explicit_limit(World<D>& world, double time);
+
+// What limits a step of motion.
+struct MotionLimit {
+  double dt = 0;       // [s]
+  const char* reason;  // of the two waves, or Darcy flow
+};
+// Of water and skeleton together; wave_speed: of the skeleton [m/s]. In a mode of the grid the stiffnesses of
+// skeleton and water add up, and with them the squares of the frequencies.
+MotionLimit combined_limit(const fdm::ExplicitLimit& water, double cell, double wave_speed);
+
+}  // namespace polder::coupling
