@@ -248,6 +248,20 @@ void check_stages(Reader& reader) {
                    "equilibrium, dynamic; or another formulation");
 }
 
+// Where the pressure follows from the compression of the water, there must be some.
+void check_compressibility(Reader& reader) {
+  const Scene& scene = reader.scene;
+  const coupling::Formulation& f = *coupling::find_formulation(scene.formulation);
+  const std::string key = "pore_water.bulk_modulus";
+  if (f.pressure != coupling::PressureMethod::compressible || std::isfinite(scene.water.bulk_modulus) ||
+      reader.failed(key))
+    return;
+  reader.error(key,
+               "incompressible water with formulation \"" + scene.formulation +
+                   "\", whose pressure follows from the compression of the water",
+               "a finite bulk modulus; or formulation = \"one-layer\"");
+}
+
 }  // namespace
 
 void check_water(Reader& reader) {
@@ -258,6 +272,7 @@ void check_water(Reader& reader) {
   check_stages(reader);
   if (!f || reader.failed("formulation") || f->carrier == coupling::WaterCarrier::none) return;
   check_materials(reader);
+  check_compressibility(reader);
   check_relaxations(reader);
 }
 

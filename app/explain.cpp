@@ -46,7 +46,8 @@ void explain_formulation(const Scene& scene, std::ostream& out) {
       << name_of(f.pressure,
                  {{PressureMethod::projected,
                    "projected: stiff water and low conductivity do not limit the step"},
-                  {PressureMethod::compressible, "from the bulk modulus: the water wave limits the step"}})
+                  {PressureMethod::compressible,
+                   "explicitly from the bulk modulus: stiff water and Darcy flow limit the step"}})
       << '\n';
   if (!scene.unsaturated()) return;
   out << "  saturation  from the retention curves of";
@@ -99,7 +100,16 @@ void explain_random_fields(const Scene& scene, std::ostream& out) {
     }
 }
 
-void explain_run_time(const Scene& scene, double step, std::ostream& out) {
+// The time step of each stage's motion as the scene begins.
+std::vector<double> steps_of_motion(const Simulation& simulation) {
+  const Scene& scene = simulation.scene();
+  std::vector<double> steps;
+  for (std::size_t i = 0; i < scene.stages.size(); ++i)
+    steps.push_back(scene.numerics.time_step.value_or(simulation.automatic_step(static_cast<int>(i))));
+  return steps;
+}
+
+void explain_run_time(const Scene& scene, const std::vector<double>& step, std::ostream& out) {
   const std::vector<StageTime> times = estimate_run_time(scene, step);
   double total = 0;
   bool water = false, factors = false;
@@ -141,6 +151,23 @@ void explain_run_time(const Scene& scene, double step, std::ostream& out) {
       out << "  measure " << m.name << ": a search for the factor of safety besides, about ten relaxations\n";
 }
 
+// What an explicit pressure costs: what becomes of the step where pores fill, and the same case with a
+// projected pressure.
+void explain_cost(const Scene& scene, double limit, double longest, std::ostream& out) {
+  const double filled = scene.numerics.courant * limit;
+  if (scene.unsaturated() && !scene.numerics.time_step && longest > filled)
+    out << "  with soil full of water or nearly so anywhere the step falls to about " << digits(filled, 2)
+        << " s, and a run takes up to " << digits(longest / filled, 2) << " times as long\n";
+  Scene projected = scene;
+  projected.formulation = "one-layer";
+  projected.numerics.time_step.reset();
+  double seconds = 0;
+  for (const StageTime& t : estimate_run_time(projected, steps_of_motion(Simulation(projected))))
+    if (!std::isnan(t.seconds())) seconds += t.seconds();
+  out << "one-layer     about " << duration_text(seconds)
+      << ": the same equations with a projected pressure\n";
+}
+
 }  // namespace
 
 int explain_command(const Arguments& a, std::ostream& out, std::ostream&) {
@@ -148,7 +175,12 @@ int explain_command(const Arguments& a, std::ostream& out, std::ostream&) {
   set_threads(choose_threads(a.integer("--threads", 1, kMostThreads).value_or(0), scene));
   Simulation simulation(scene);
   const coupling::StepLimit limit = simulation.step_limit();
-  const double step = scene.numerics.time_step.value_or(simulation.automatic_step());
+  const std::vector<double> steps = steps_of_motion(simulation);
+  // Shown: that of the first stage that moves with its water, if there is one.
+  std::size_t typical = 0;
+  for (std::size_t i = scene.stages.size(); i-- > 0;)
+    if (scene.stages[i].moves() && scene.stages[i].water_flows && !scene.stages[i].relaxes()) typical = i;
+  const double step = steps[typical];
 
   out << "case          " << a.words.front() << (scene.title.empty() ? "" : ": " + scene.title) << '\n';
   explain_formulation(scene, out);
@@ -170,10 +202,11 @@ int explain_command(const Arguments& a, std::ostream& out, std::ostream&) {
       << " s ("
       << (scene.numerics.time_step ? "fixed by the case" : "courant " + format_number(scene.numerics.courant))
       << ")\n";
-  if (step > limit.dt) out << "warning       the step is beyond the limit of stability\n";
+  if (simulation.is_beyond_limit()) out << "warning       the step is beyond the limit of stability\n";
   out << "stages\n";
-  for (const coupling::Stage& s : scene.stages) {
-    const double n = s.moves() ? std::ceil(s.duration / step) : 0;
+  for (std::size_t i = 0; i < scene.stages.size(); ++i) {
+    const coupling::Stage& s = scene.stages[i];
+    const double n = s.moves() ? std::ceil(s.duration / steps[i]) : 0;
     out << "  " << s.name << ": " << stage_text(s, n) << '\n';
   }
   out << "off\n";
@@ -181,7 +214,9 @@ int explain_command(const Arguments& a, std::ostream& out, std::ostream&) {
   if (std::all_of(scene.bodies.begin(), scene.bodies.end(), [](const auto& b) { return b.random.empty(); }))
     out << "  random fields: no body has one, so none is generated\n";
   for (const std::string& n : notes(scene)) out << "  " << n << '\n';
-  explain_run_time(scene, step, out);
+  explain_run_time(scene, steps, out);
+  if (coupling::find_formulation(scene.formulation)->pressure == coupling::PressureMethod::compressible)
+    explain_cost(scene, limit.dt, step, out);
   return static_cast<int>(ExitCode::done);
 }
 

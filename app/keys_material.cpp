@@ -215,7 +215,8 @@ const Table<WaterSpec>& pore_water_keys() {
     Table<W> t;
     t.add("density", number(dimension::kDensity, kPositive), &W::density, "Density of the water.");
     t.add("bulk_modulus", number(dimension::kPressure, stiffness), &W::bulk_modulus,
-          "Bulk modulus of the water; inf: incompressible.");
+          "Bulk modulus of the water; inf: incompressible. Formulation higo needs a finite one, and its step "
+          "shortens with the root of it or more.");
     t.add("viscosity", number(dimension::kViscosity, kPositive), &W::viscosity,
           "Dynamic viscosity; turns intrinsic permeability into hydraulic conductivity.");
     t.add("phreatic", section_points(2), &W::phreatic,

@@ -108,8 +108,8 @@ const Table<NumericsSpec>& numerics_keys() {
           "Fixed time step; without it the step is chosen from the limits.");
     t.add("courant", number(dimension::kNone, {.min = 0, .max = 1.5, .min_open = true}),
           &NumericsSpec::courant,
-          "Time step as a share of cell over drained wave speed; the stable limit, 1.7 or more for musl, is "
-          "what explain prints. "
+          "Time step as a share of cell over drained wave speed, with formulation higo of what the water "
+          "allows, which is far less; the stable limit, 1.7 or more for musl, is what explain prints. "
           "Damped stages take 1 at most, because damping shortens it.")
         .only_with("time_step", "time_step absent", [](const NumericsSpec& n) { return !n.time_step; });
     t.add("rhie_chow", number(dimension::kNone, {.min = 0, .max = 1}), &NumericsSpec::rhie_chow,
@@ -117,7 +117,8 @@ const Table<NumericsSpec>& numerics_keys() {
     t.add("solver_tolerance", number(dimension::kNone, {.min = 1e-14, .max = 1e-2}),
           &NumericsSpec::solver_tolerance,
           "Relative residual to which the pressure system is solved; of unsaturated flow, water left over in "
-          "a step as a share of what moves, a hundred times as much where the skeleton moves.");
+          "a step as a share of what moves, a hundred times as much where the skeleton moves. Formulation "
+          "higo solves no system in stages of motion.");
     return t;
   }();
   return table;

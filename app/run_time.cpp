@@ -60,12 +60,12 @@ double fewest_water_steps(const Stage& s) {
 
 }  // namespace
 
-std::vector<StageTime> estimate_run_time(const Scene& scene, double step) {
+std::vector<StageTime> estimate_run_time(const Scene& scene, const std::vector<double>& step) {
   std::vector<StageTime> times;
   for (std::size_t i = 0; i < scene.stages.size(); ++i) {
     const Stage& s = scene.stages[i];
     StageTime t;
-    t.steps = s.moves() ? std::ceil(s.duration / step) : fewest_water_steps(s);
+    t.steps = s.moves() ? std::ceil(s.duration / step[i]) : fewest_water_steps(s);
     std::size_t same = 0;
     while (!alike(scene.stages[same], s)) ++same;
     t.seconds_per_step = same < i ? times[same].seconds_per_step : trial(scene, s);

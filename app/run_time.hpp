@@ -19,7 +19,7 @@ struct StageTime {
   double seconds() const { return steps * seconds_per_step; }
 };
 
-// For each stage; step: the time step of motion [s].
-std::vector<StageTime> estimate_run_time(const coupling::Scene& scene, double step);
+// For each stage; step: the time step of its motion [s].
+std::vector<StageTime> estimate_run_time(const coupling::Scene& scene, const std::vector<double>& step);
 
 }  // namespace polder::app

@@ -11,7 +11,12 @@
 namespace polder::coupling {
 namespace {
 
-// 1 / rho of the mixture in the cells.
+// Velocities of the nodes are those of the points of the last step, smoothed by the way to them and back,
+// plus the acceleration of this one, which is not. Where these velocities themselves strain the soil (USL)
+// the change within a step counts up to twice (docs/theory/higo.md); mapped once more (MUSL) at most once.
+constexpr double kUslFactor = 2;
+
+// 1 / rho of the mixture in the cells, times that factor.
 template <int D>
 void find_specific_volume(World<D>& world) {
   PoreWater<D>& w = *world.pore_water;
@@ -19,11 +24,12 @@ void find_specific_volume(World<D>& world) {
   double grains = std::numeric_limits<double>::infinity();
   for (const Material& m : world.scene.materials)
     if (m.porosity > 0) grains = std::min(grains, m.density_solid);
+  const double factor = world.skeleton.options().musl ? 1 : kUslFactor;
   w.specific_volume.resize(w.fill.size());
   parallel_for(static_cast<int>(w.fill.size()), [&](int i) {
     const double* s = &w.cell_sums[static_cast<std::size_t>(i) * 4];
     const double mass = grains * s[1] + s[3];
-    w.specific_volume[i] = mass > 0 ? s[0] / mass : 0;
+    w.specific_volume[i] = mass > 0 ? factor * s[0] / mass : 0;
   });
 }
 

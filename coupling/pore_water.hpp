@@ -66,6 +66,7 @@ struct PoreWater {
     return unsaturated ? unsaturated->field.discharge() : pressure.discharge();
   }
   const char* solver_name() const {
+    if (compressible) return "explicit";
     return unsaturated ? unsaturated->field.solver_name() : pressure.solver_name();
   }
 };

@@ -272,6 +272,7 @@ struct Stage {
   double failure_share = 0.01;
   int relaxation_steps = 1500;  // quasi_static: most steps of one search for equilibrium
   bool moves() const { return mode == Mode::equilibrium || mode == Mode::dynamic; }
+  bool relaxes() const { return mode == Mode::equilibrium && damping == 0; }
   bool operator==(const Stage&) const = default;
 };
 

@@ -69,24 +69,24 @@ Simulation::Run<D>::Run(const Scene& s) : world(build_world<D>(s)) {
 // Local damping enlarges a force against the motion by 1 + alpha, and shortens the stable step by the root of
 // it.
 template <int D>
-double Simulation::Run<D>::courant_share() const {
-  const bool damped = !finished() && present().damping > 0;
+double Simulation::Run<D>::courant_share(int of_stage) const {
+  const bool damped = scene.stages.at(of_stage).damping > 0;
   return damped ? std::min(scene.numerics.courant, 1.0) : scene.numerics.courant;
 }
 
 template <int D>
-std::pair<double, const char*> Simulation::Run<D>::chosen_step(double skeleton_speed) const {
-  const double h = world->skeleton.grid().spacing();
-  const bool still = finished() || !present().water_flows;
-  if (!world->pore_water || !world->pore_water->compressible || still)
-    return {courant_share() * h / skeleton_speed, "skeleton wave"};
+std::pair<double, const char*> Simulation::Run<D>::chosen_step(int of_stage, double skeleton_speed) const {
+  const double h = world->skeleton.grid().spacing(), share = courant_share(of_stage);
+  const Stage& spec = scene.stages[of_stage];
+  if (!world->pore_water || !world->pore_water->compressible || !spec.water_flows || spec.relaxes())
+    return {share * h / skeleton_speed, "skeleton wave"};
   const MotionLimit limit = combined_limit(explicit_limit(*world, time), h, skeleton_speed);
-  return {courant_share() * limit.dt, limit.reason};
+  return {share * limit.dt, limit.reason};
 }
 
 template <int D>
-double Simulation::Run<D>::automatic_step() const {
-  return chosen_step(world->skeleton.wave_speed(world->materials)).first;
+double Simulation::Run<D>::automatic_step(int of_stage) const {
+  return chosen_step(of_stage, world->skeleton.wave_speed(world->materials)).first;
 }
 
 template <int D>
@@ -132,7 +132,7 @@ void Simulation::Run<D>::step_motion() {
   if (steps % kWaveInterval == 0) wave_speed = skeleton.wave_speed(world->materials);
 
   // Time step: a share of the limit of the waves; never more than a share of a cell for the fastest point.
-  const auto chosen = chosen_step(wave_speed);
+  const auto chosen = chosen_step(stage, wave_speed);
   double step_size = chosen.first;
   reason = chosen.second;
   if (scene.numerics.time_step) step_size = *scene.numerics.time_step, reason = "fixed by the case";
@@ -386,8 +386,8 @@ double Simulation::smallest_step() const {
 double Simulation::largest_step() const {
   return run_->largest;
 }
-double Simulation::automatic_step() const {
-  return run_->automatic_step();
+double Simulation::automatic_step(int stage) const {
+  return run_->automatic_step(stage);
 }
 StepLimit Simulation::step_limit() const {
   if (!run_->limit) {
@@ -399,6 +399,18 @@ StepLimit Simulation::step_limit() const {
     run_->limit = StepLimit{found.dt, text};
   }
   return *run_->limit;
+}
+bool Simulation::is_beyond_limit() const {
+  const Scene& s = run_->scene;
+  if (s.numerics.time_step) return *s.numerics.time_step > step_limit().dt;
+  const bool compressible = find_formulation(s.formulation)->pressure == PressureMethod::compressible;
+  if (compressible && s.unsaturated()) return s.numerics.courant > 1;
+  for (std::size_t i = 0; i < s.stages.size(); ++i) {
+    const Stage& stage = s.stages[i];
+    if (compressible && (stage.relaxes() || !stage.water_flows)) continue;  // the water limits nothing there
+    if (automatic_step(static_cast<int>(i)) > step_limit().dt) return true;
+  }
+  return false;
 }
 double Simulation::equilibrium_force_ratio() const {
   return run_->force_ratio;
@@ -475,6 +487,11 @@ std::vector<std::string> Simulation::skipped() const {
                   (scene.unsaturated() ? "porous" : "saturated") + " soil: not in the system");
     if (std::none_of(scene.stages.begin(), scene.stages.end(), [](const Stage& t) { return t.moves(); }))
       s.push_back("motion: no stage has any, so nothing is transferred between points and nodes");
+    if (find_formulation(scene.formulation)->pressure == PressureMethod::compressible)
+      s.push_back(
+          "linear systems: pressure is explicit where soil moves; solver_tolerance counts in stages of "
+          "seepage "
+          "and quasi-static ones only");
     if (!scene.water.outside_level) s.push_back("open water on the surface: the scene has none");
   }
   s.push_back("discrete elements: the scene has none, so LIGGGHTS and MPI are not loaded");

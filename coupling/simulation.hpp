@@ -141,8 +141,13 @@ class Simulation {
   const std::string& step_reason() const;  // what limited it
   double smallest_step() const;
   double largest_step() const;
-  double automatic_step() const;  // courant times cell over wave speed, at present [s]
-  StepLimit step_limit() const;   // of the soils at the start (step_limit.hpp); the first call takes a moment
+  // Chosen for a stage from the state at present: courant times cell over wave speed, less where the water
+  // limits the step [s].
+  double automatic_step(int stage = 0) const;
+  StepLimit step_limit() const;  // of the soils at the start (step_limit.hpp); the first call takes a moment
+  // The step of some stage is longer than stable, from what is known at present. (An automatic one that
+  // follows the filling of pores is not, though the limit, which is of saturated soil, may be shorter.)
+  bool is_beyond_limit() const;
   double equilibrium_force_ratio() const;
   double equilibrium_energy_ratio() const;
 

@@ -13,7 +13,7 @@ namespace polder::coupling {
 struct Simulation::Base {
   virtual ~Base() = default;
   virtual void step() = 0;
-  virtual double automatic_step() const = 0;
+  virtual double automatic_step(int of_stage) const = 0;
   virtual std::vector<Column> history() const = 0;
   virtual long particles() const = 0;
   virtual long cells() const = 0;
@@ -55,9 +55,7 @@ struct Simulation::Base {
   bool finished() const { return stage >= static_cast<int>(scene.stages.size()); }
   const Stage& present() const { return scene.stages[stage]; }
   // Equilibrium without damping of its own: by relaxation, not by damped dynamic steps.
-  bool relaxes() const {
-    return !finished() && present().mode == Stage::Mode::equilibrium && present().damping == 0;
-  }
+  bool relaxes() const { return !finished() && present().relaxes(); }
 };
 
 template <int D>
@@ -73,10 +71,10 @@ struct Simulation::Run final : Simulation::Base {
 
   explicit Run(const Scene& s);
   void step() override;
-  double courant_share() const;
+  double courant_share(int of_stage) const;
   // Share of the limits that the step is chosen from, and what sets it (explicit_water.hpp).
-  std::pair<double, const char*> chosen_step(double skeleton_speed) const;
-  double automatic_step() const override;
+  std::pair<double, const char*> chosen_step(int of_stage, double skeleton_speed) const;
+  double automatic_step(int of_stage) const override;
   std::vector<Column> history() const override;
   long particles() const override;
   long cells() const override { return world->skeleton.grid().slots(); }

@@ -21,7 +21,8 @@
 // theta h, that is the factor of cut cells. The stiffness of the skeleton is left to the caller: it adds
 // (c_d / h)^2 to w / 4.
 //
-// MUSL makes short waves slower (docs/theory/higo.md); the limit then errs on the safe side.
+// Points between the nodes of one step and the next change w (docs/theory/higo.md): the caller may put a
+// factor on `inertia`.
 #pragma once
 
 #include <limits>

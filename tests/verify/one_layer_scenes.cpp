@@ -24,7 +24,7 @@ mpm::MaterialParameters elastic_soil(double young, double poisson, double porosi
 
 Scene wet_scene(const Choice& c, double width, double height, double duration) {
   Scene s;
-  s.formulation = "one-layer";
+  s.formulation = c.formulation;
   s.grid.cell = c.cell;
   s.grid.size = {c.cell * std::ceil(width / c.cell - 1e-9), c.cell * std::ceil(height / c.cell - 1e-9), 0};
   s.grid.shape = c.shape;

@@ -1,4 +1,4 @@
-// Scenes of the one-layer formulation with known answers, what they are built from. Used by the tests and by
+// Scenes of water in cells (formulations one-layer and higo) with known answers, what they are built from. Used by the tests and by
 // the program that prints the tables of docs/validation/one_layer.md. SI units.
 #pragma once
 
@@ -28,6 +28,7 @@ struct Choice {
   int per_axis = 2;             // particles in a cell along each axis
   double rhie_chow = 0.05;      // chi
   coupling::LockingCure locking = coupling::LockingCure::automatic;
+  const char* formulation = "one-layer";
 };
 
 mpm::MaterialParameters elastic_soil(double young, double poisson, double porosity, double conductivity,
