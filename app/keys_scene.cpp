@@ -92,8 +92,10 @@ const Table<NumericsSpec>& numerics_keys() {
     t.add("transfer",
           choice<Transfer>({{"flip", Transfer::flip}, {"apic", Transfer::apic}, {"tpic", Transfer::tpic}}),
           &NumericsSpec::transfer, "Velocity between particles and grid: FLIP/PIC blend, affine, or Taylor.");
-    t.add("flip", number(dimension::kNone, {.min = 0, .max = 1}), &NumericsSpec::flip,
-          "Share of FLIP in the blend; the rest is PIC.")
+    t.add(
+         "flip", number(dimension::kNone, {.min = 0, .max = 1}), &NumericsSpec::flip,
+         "Share of FLIP in the blend; the rest is PIC. With formulation higo that of a step of the skeleton, "
+         "spread over the shorter ones that the water asks for.")
         .only_with("transfer", "transfer = \"flip\"",
                    [](const NumericsSpec& n) { return n.transfer == Transfer::flip; });
     t.add("locking",

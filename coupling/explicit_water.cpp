@@ -79,6 +79,12 @@ const fdm::ExplicitLimit& explicit_limit(World<D>& world, double time) {
   return w.explicit_limit;
 }
 
+template <int D>
+void blend_for_step(World<D>& world, double dt, double skeleton_step) {
+  const double pic = 1 - world.scene.numerics.flip;
+  world.skeleton.set_flip(1 - pic * std::min(1.0, dt / skeleton_step));
+}
+
 MotionLimit combined_limit(const fdm::ExplicitLimit& water, double cell, double wave_speed) {
   const double skeleton = cell / wave_speed;
   MotionLimit limit;
@@ -88,6 +94,7 @@ MotionLimit combined_limit(const fdm::ExplicitLimit& water, double cell, double 
 }
 
 #define POLDER_INSTANTIATE(D)                                      \
+  template void blend_for_step<D>(World<D>&, double, double);      \
   template void advance_water<D>(World<D>&, double, const Reals&); \
   template const fdm::ExplicitLimit& explicit_limit<D>(World<D>&, double);
 POLDER_INSTANTIATE(2)

@@ -17,6 +17,12 @@ void advance_water(World<D>& world, double dt, const Reals& strain_velocity);
 template <int D>
 const fdm::ExplicitLimit& explicit_limit(World<D>& world, double time);
 
+// The blend of FLIP and PIC for a step of this length. PIC damps in every step; the share that the scene
+// gives is that of a step of `skeleton_step`, the one that the skeleton would take by itself, and is spread
+// over the many that water makes of it. So motion is damped in time as it is with a projected pressure.
+template <int D>
+void blend_for_step(World<D>& world, double dt, double skeleton_step);
+
 // What limits a step of motion.
 struct MotionLimit {
   double dt = 0;       // [s]

@@ -149,6 +149,8 @@ void Simulation::Run<D>::step_motion() {
   in.water_flows = stage_spec.water_flows;
   if (stage_spec.gravity_ramp > 0)
     in.gravity = std::min(1.0, (time + dt - stage_start) / stage_spec.gravity_ramp);
+  if (world->pore_water && world->pore_water->compressible)
+    blend_for_step(*world, dt, courant_share(stage) * h / wave_speed);
   {
     Stopwatch mechanics(timing.mechanics);
     const mpm::MoveResult moved =

@@ -98,6 +98,9 @@ class Patch {
     double early = 0;
     StepInput in;
     in.dt = dt;
+    const World<D>& w = *world_;
+    if (w.pore_water && w.pore_water->compressible)
+      blend_for_step(*world_, dt, w.scene.numerics.courant * w.skeleton.grid().spacing() / wave_speed_);
     for (int i = 0; i < kSteps; ++i) {
       if (world_->pore_water)
         step_one_layer(*world_, in, 1);

@@ -48,6 +48,7 @@ class Skeleton {
   Grid<D>& grid() { return grid_; }
   const Grid<D>& grid() const { return grid_; }
   const SkeletonOptions& options() const { return options_; }
+  void set_flip(double share) { options_.flip = share; }  // from the next step on
   BoundarySet<D>& boundaries() { return boundaries_; }
   const BoundarySet<D>& boundaries() const { return boundaries_; }
   std::vector<SurfaceLoad<D>>& loads() { return loads_; }
