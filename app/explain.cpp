@@ -202,7 +202,7 @@ int explain_command(const Arguments& a, std::ostream& out, std::ostream&) {
       << " s ("
       << (scene.numerics.time_step ? "fixed by the case" : "courant " + format_number(scene.numerics.courant))
       << ")\n";
-  if (simulation.is_beyond_limit()) out << "warning       the step is beyond the limit of stability\n";
+  if (simulation.step_beyond_limit() > 0) out << "warning       the step is beyond the limit of stability\n";
   out << "stages\n";
   for (std::size_t i = 0; i < scene.stages.size(); ++i) {
     const coupling::Stage& s = scene.stages[i];

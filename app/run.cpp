@@ -200,9 +200,9 @@ void Run::announce() {
   for (const std::string& s : simulation_.skipped()) log_.line("skipped      " + s);
   for (const std::string& remark : options_.remarks) log_.line(remark);
   for (const std::string& note : notes(scene)) log_.warning(note);
-  if (simulation_.is_beyond_limit())
-    log_.warning("the step of " + digits(scene.numerics.time_step.value_or(simulation_.automatic_step()), 4) +
-                 " s (" + (scene.numerics.time_step ? "numerics.time_step" : "numerics.courant") +
+  if (const double step = simulation_.step_beyond_limit(); step > 0)
+    log_.warning("the step of " + digits(step, 4) + " s (" +
+                 (scene.numerics.time_step ? "numerics.time_step" : "numerics.courant") +
                  ") is beyond the limit of stability");
   if (options_.restart)
     log_.line("restarted at " + digits(simulation_.time(), 6) + " s, step " +

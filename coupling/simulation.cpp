@@ -402,17 +402,19 @@ StepLimit Simulation::step_limit() const {
   }
   return *run_->limit;
 }
-bool Simulation::is_beyond_limit() const {
+double Simulation::step_beyond_limit() const {
   const Scene& s = run_->scene;
-  if (s.numerics.time_step) return *s.numerics.time_step > step_limit().dt;
+  const double limit = step_limit().dt;
+  if (s.numerics.time_step) return *s.numerics.time_step > limit ? *s.numerics.time_step : 0;
   const bool compressible = find_formulation(s.formulation)->pressure == PressureMethod::compressible;
-  if (compressible && s.unsaturated()) return s.numerics.courant > 1;
+  if (compressible && s.unsaturated()) return s.numerics.courant > 1 ? s.numerics.courant * limit : 0;
   for (std::size_t i = 0; i < s.stages.size(); ++i) {
     const Stage& stage = s.stages[i];
     if (compressible && (stage.relaxes() || !stage.water_flows)) continue;  // the water limits nothing there
-    if (automatic_step(static_cast<int>(i)) > step_limit().dt) return true;
+    const double step = automatic_step(static_cast<int>(i));
+    if (step > limit) return step;
   }
-  return false;
+  return 0;
 }
 double Simulation::equilibrium_force_ratio() const {
   return run_->force_ratio;

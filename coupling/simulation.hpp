@@ -145,9 +145,10 @@ class Simulation {
   // limits the step [s].
   double automatic_step(int stage = 0) const;
   StepLimit step_limit() const;  // of the soils at the start (step_limit.hpp); the first call takes a moment
-  // The step of some stage is longer than stable, from what is known at present. (An automatic one that
-  // follows the filling of pores is not, though the limit, which is of saturated soil, may be shorter.)
-  bool is_beyond_limit() const;
+  // A stage's step that is longer than stable, from what is known at present; 0 if there is none [s]. (An
+  // automatic one that follows the filling of pores is not, though the limit, which is of saturated soil, may
+  // be shorter.)
+  double step_beyond_limit() const;
   double equilibrium_force_ratio() const;
   double equilibrium_energy_ratio() const;
 
