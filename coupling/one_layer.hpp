@@ -4,8 +4,8 @@
 //   sort, cells (fill, porosity, surface), scatter,
 //   predict with grad p^n, constrain, map to the velocities that strain the soil, solve for dp, correct with
 //   grad dp, gather, wet.
-// Where the pressure is not projected but follows from the bulk modulus of the water (formulation higo), it is
-// advanced with the velocities that strain the soil in place of solution and correction.
+// Where the pressure is not projected but follows from the bulk modulus of the water (formulation higo), it
+// is advanced with the velocities that strain the soil in place of solution and correction.
 #pragma once
 
 #include "coupling/world.hpp"

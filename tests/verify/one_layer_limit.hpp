@@ -26,7 +26,8 @@ double first_unstable_step(const Block& block);
 // What `polder explain` prints for the block [s].
 double predicted_step(const Block& block);
 
-// The automatic step of the block at courant 1: h / c_d, or with an explicit pressure the formula's limit [s].
+// The automatic step of the block at courant 1: h / c_d, or with an explicit pressure the formula's limit
+// [s].
 double wave_step(const Block& block);
 
 }  // namespace polder::verify

@@ -1,5 +1,5 @@
-// Scenes of water in cells (formulations one-layer and higo) with known answers, what they are built from. Used by the tests and by
-// the program that prints the tables of docs/validation/one_layer.md. SI units.
+// Scenes of water in cells (formulations one-layer and higo) with known answers, what they are built from.
+// Used by the tests and by the program that prints the tables of docs/validation/one_layer.md. SI units.
 #pragma once
 
 #include <string>
