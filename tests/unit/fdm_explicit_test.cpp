@@ -17,7 +17,7 @@ using Kind2 = WaterBoundary<2>::Kind;
 
 namespace {
 
-constexpr double kGamma = 9810, kBulk = 2.2e8, kPorosity = 0.4, kDensity = 1990;
+constexpr double kBulk = 2.2e8, kPorosity = 0.4, kDensity = 1990;
 
 template <int D>
 struct Block : Scene<D> {

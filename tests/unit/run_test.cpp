@@ -264,7 +264,7 @@ TEST_CASE("the run time is that of each stage") {
   polder::set_threads(1);
   const std::string story = std::string(POLDER_SOURCE_DIR) + "/cases/levee-story/levee-story.toml";
   const polder::coupling::Scene scene = polder::app::read_case(story, {"grid.cell=0.25"});
-  const std::vector<polder::app::StageTime> times = polder::app::estimate_run_time(scene, 3e-3);
+  const std::vector<polder::app::StageTime> times = polder::app::estimate_run_time(scene, {3e-3, 3e-3, 3e-3});
   REQUIRE(times.size() == 3);
   CHECK(times[0].steps == doctest::Approx(10 / 3e-3).epsilon(1e-3));
   CHECK(times[1].steps == 118);  // a hundredth of the duration each, after eighteen that grow
