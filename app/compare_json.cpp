@@ -25,6 +25,16 @@ Json run_json(const Comparison& c, std::size_t i, const std::filesystem::path& f
   j["courant"] = numerics.time_step ? Json() : Json(numerics.courant);
   j["time_step"] = numerics.time_step ? Json(*numerics.time_step) : Json();
   j["start"] = r.start;
+  Json stages = Json::array();  // those compared
+  for (const RunRecord::Stage& s : run.stages) {
+    if (s.mode == "equilibrium") continue;
+    Json stage = Json::object();
+    stage["name"] = s.name;
+    stage["start"] = s.start;
+    stage["time"] = s.time;
+    stages.push_back(std::move(stage));
+  }
+  j["stages"] = std::move(stages);
   j["time"] = run.time;
   j["steps"] = run.steps;
   j["computed_steps"] = run.computed_steps;

@@ -8,48 +8,51 @@ namespace {
 
 constexpr double kLeastOrder = 0.5, kMostOrder = 2;
 
-struct Sums {
-  double time = 0, square = 0, largest = -1, largest_at = 0;
-  std::size_t largest_in = 0;
+struct Largest {
+  double value = -1, at = 0;
+  std::size_t curve = 0;
 };
 
-// Integrates the square of the difference, which is linear between the points of both curves.
-void add(const Curve& a, const Curve& b, double offset, std::size_t number, Sums& sums) {
-  if (a.x.empty() || b.x.empty()) return;
+// Mean square of the difference, which is linear between the points of both curves; NaN: nothing in common.
+double mean_square(const Curve& a, const Curve& b, double offset, std::size_t number, Largest& largest) {
+  double length = 0, square = 0, before = 0, at_point = std::numeric_limits<double>::quiet_NaN();
+  if (a.x.empty() || b.x.empty()) return at_point;
   const double start = std::max(a.x.front(), b.x.front()), end = std::min(a.x.back(), b.x.back());
-  std::vector<double> times;
+  std::vector<double> points;
   for (const Curve* c : {&a, &b})
-    for (const double t : c->x)
-      if (t >= start && t <= end) times.push_back(t);
-  std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin(), times.end()), times.end());
-  double before = 0;
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    const double d = interpolate(a.x, a.value, times[i]) - interpolate(b.x, b.value, times[i]);
-    if (std::abs(d) > sums.largest)
-      sums.largest = std::abs(d), sums.largest_at = offset + times[i], sums.largest_in = number;
+    for (const double x : c->x)
+      if (x >= start && x <= end) points.push_back(x);
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double d = interpolate(a.x, a.value, points[i]) - interpolate(b.x, b.value, points[i]);
+    if (std::abs(d) > largest.value) largest = {std::abs(d), offset + points[i], number};
+    if (!std::isnan(d)) at_point = d * d;
     if (i > 0 && !std::isnan(before) && !std::isnan(d)) {
-      const double dt = times[i] - times[i - 1];
-      sums.time += dt;
-      sums.square += dt / 3 * (before * before + before * d + d * d);
+      const double dx = points[i] - points[i - 1];
+      length += dx;
+      square += dx / 3 * (before * before + before * d + d * d);
     }
     before = d;
   }
+  return length > 0 ? square / length : at_point;
 }
 
 }  // namespace
 
 CurveDifference difference(const Trace& a, const Trace& b) {
-  Sums sums;
-  double offset = 0;
+  Largest largest;
+  double offset = 0, sum = 0;
+  int curves = 0;
   for (std::size_t s = 0; s < std::min(a.size(), b.size()); ++s) {
-    add(a[s], b[s], offset, s, sums);
+    const double square = mean_square(a[s], b[s], offset, s, largest);
+    if (!std::isnan(square)) sum += square, ++curves;
     if (!a[s].x.empty()) offset += a[s].x.back();
   }
   CurveDifference d;
-  if (sums.largest < 0) return d;
-  d.max = sums.largest, d.max_at = sums.largest_at, d.max_curve = sums.largest_in;
-  d.l2 = sums.time > 0 ? std::sqrt(sums.square / sums.time) : sums.largest;
+  if (curves == 0) return d;
+  d.l2 = std::sqrt(sum / curves);
+  d.max = largest.value, d.max_at = largest.at, d.max_curve = largest.curve;
   return d;
 }
 

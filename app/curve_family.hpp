@@ -1,7 +1,8 @@
 // Differences between curves, and the discretisation error that a family of them tells.
 //
 // A trace is what a run has measured: a curve over time for each stage, from its start, or over a coordinate
-// for each of some times. Two runs are compared over what a curve has in both.
+// for each of some times. Two runs are compared over what a curve has in both; curves count alike, as the ten
+// seconds of a slide do beside the days of seepage before it.
 //
 // Error of the finest of a family by Richardson's extrapolation (Richardson 1911; Roache 1994): with curves
 // f1, f2 of the two finest sizes h1 < h2, |f1 - f| = |f2 - f1| / ((h2 / h1)^p - 1). The order p is observed
@@ -21,7 +22,7 @@ using Trace = std::vector<Curve>;
 
 // In the unit of the curves. NaN: no time in common.
 struct CurveDifference {
-  double l2 = std::numeric_limits<double>::quiet_NaN();   // root of the mean square over the common time
+  double l2 = std::numeric_limits<double>::quiet_NaN();   // root of the mean square
   double max = std::numeric_limits<double>::quiet_NaN();  // largest magnitude
   double max_at = 0;  // where: as if the curves followed each other, since the start of the first [s]
   std::size_t max_curve = 0;

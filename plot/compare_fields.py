@@ -13,6 +13,7 @@ from field_figures import (FLUID_DEFAULT, SOIL_DEFAULT, Section, box_around, col
 from results import PlotError
 
 SHARES = [0.0, 0.25, 0.5, 1.0]  # of the time that all have
+SHARES_OF_STAGES = [0.5, 1.0]  # where stages are drawn for themselves
 MOST = 4  # runs in one figure
 TALL = 1.5  # height over width beyond which everything stands in one row
 
@@ -46,7 +47,7 @@ def read_panel(run, series_name, name, time):
     field = find_field(name, series) if series else None
     if field is None:
         return None
-    frame = series.nearest([run.start + time])[0]
+    frame = series.nearest([time])[0]
     full = next((f for f in series.frames if len(f.points()) > 0), frame)
     section = Section(full, series.kind)
     shapes, keep = section.shapes(frame)
@@ -56,7 +57,7 @@ def read_panel(run, series_name, name, time):
 
 def draw_field(comparison, runs, series_name, name, times, output):
     """One figure; returns its path, None if there is nothing to see."""
-    rows = [[read_panel(run, series_name, name, time) for run in runs] for time in times]
+    rows = [[read_panel(run, series_name, name, time[run]) for run in runs] for time in times]
     panels = [panel for row in rows for panel in row if panel is not None and len(panel.shapes)]
     if not panels or not any(np.any(panel.values) for panel in panels):
         return None
@@ -91,13 +92,19 @@ def draw_field(comparison, runs, series_name, name, times, output):
 
 
 def draw(comparison, output, names, times):
-    """names None: the usual fields; times [s] count from where the comparison begins."""
+    """names None: the usual fields; times [s], if given, count from where the comparison begins."""
     runs = shown_runs(comparison)
     if not runs:
         return []
-    if times is None:
-        end = min(run.entry["time"] - run.start for run in runs)
-        times = [share * end for share in SHARES]
+    if times is not None:
+        times = [{run: run.start + time for run in runs} for time in times]
+    else:
+        windows = [window for _, window in comparison.windows() if all(run in window for run in runs)]
+        times = []
+        for window in windows:
+            both = min(window[run][1] - window[run][0] for run in runs)
+            for share in SHARES if len(windows) == 1 else SHARES_OF_STAGES:
+                times.append({run: window[run][0] + share * both for run in runs})
     written = []
     for series_name in dict.fromkeys(s.name for run in runs for s in run.results.series):
         fluid = series_name.split("_")[0] == "fluid"

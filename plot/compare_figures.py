@@ -19,6 +19,7 @@ from results import Results, read_json
 
 LINES = ["-", "--", ":", "-.", (0, (6, 1, 1, 1, 1, 1)), (0, (1, 4))]
 REFERENCE = (0, (3, 2))
+FAR_APART = 20  # durations of stages
 PARTS = [("mechanics", "mechanics"), ("water", "water"), ("audit", "balances"), ("output", "output"), ("other", "other")]
 # Columns of the history, and whether on a logarithmic axis.
 HISTORY = [("dt", False), ("kinetic_energy", False), ("max_speed", False), ("runout", False), ("height", False),
@@ -36,6 +37,7 @@ class Run:
         self.failed = entry["status"] == "failed"
         self.results = Results(os.path.join(folder, entry["folder"]))
         self.start = entry["start"]
+        self.stages = entry.get("stages", [])
         self.size = (entry["cell"], entry["courant"] or 0.0, entry["time_step"] or 0.0)
 
     def size_text(self, cells, steps):
@@ -64,6 +66,17 @@ class Comparison:
     def line(self, run):
         return LINES[min(self.sizes.index(run.size), len(LINES) - 1)]
 
+    def windows(self):
+        """What is drawn in one picture: (suffix of its name, {run: (start, end)}). All of the time compared, or each
+        stage for itself where their durations lie so far apart that the short ones would not be seen."""
+        names = [stage["name"] for stage in max((run.stages for run in self.runs), key=len, default=[])]
+        durations = [stage["time"] for run in self.runs for stage in run.stages if stage["time"] > 0]
+        if len(names) < 2 or max(durations) < FAR_APART * min(durations):
+            return [("", {run: (run.start, run.entry["time"]) for run in self.runs})]
+        return [(f"_{name}", {run: (stage["start"], stage["start"] + stage["time"])
+                              for run in self.runs for stage in run.stages[number:number + 1]})
+                for number, name in enumerate(names)]
+
     def end(self):
         """The last time compared [s]."""
         return max((run.entry["time"] - run.start for run in self.runs), default=0.0)
@@ -87,10 +100,16 @@ def shown_unit(unit):
     return (1e-3, "kPa") if unit == "Pa" else (1.0, unit)
 
 
-def cut(run, seconds, values):
-    """From where the comparison begins, times counted from there."""
-    keep = seconds >= run.start * (1 - 1e-9)
-    return seconds[keep] - run.start, values[keep]
+def cut(window, seconds, values):
+    """From start to end, times counted from the start."""
+    start, end = window
+    keep = (seconds >= start * (1 - 1e-9)) & (seconds <= end * (1 + 1e-9))
+    return seconds[keep] - start, values[keep]
+
+
+def longest(curves):
+    """Of the times of curves, or of panels of them [s]."""
+    return max((seconds[-1] for _, seconds, _ in curves if len(seconds)), default=0.0)
 
 
 def history_curve(run, name):
@@ -98,10 +117,10 @@ def history_curve(run, name):
     return None if found is None or isinstance(found[1], list) else found
 
 
-def draw_curves(comparison, axis, curves, title, quantity, unit, logarithmic, path):
+def draw_curves(comparison, axis, curves, span, title, quantity, unit, logarithmic, path):
     """curves: (run, seconds, values). Beside the picture a table with the rows of all runs one after the other."""
     factor, unit = shown_unit(unit)
-    divisor, _ = style.time_unit(comparison.end())
+    divisor, _ = style.time_unit(span)
     shown = [values * factor for _, _, values in curves]
     magnitude = np.abs(np.concatenate(shown)) if shown else np.array([])
     positive = magnitude[np.isfinite(magnitude) & (magnitude > 0)]
@@ -139,17 +158,18 @@ def legend_below(comparison, figure):
     figure.legend(handles=handles, loc="lower center", ncol=across)
 
 
-def panels_with_legend(comparison, panels, picture):
+def panels_with_legend(comparison, panels, picture, window):
     """panels: (title, quantity, unit, logarithmic, curves, table, measure or None)."""
     if not panels:
         return []
-    _, unit = style.time_unit(comparison.end())
+    span = max(longest(curves) for *_, curves, _, _ in panels)
+    _, unit = style.time_unit(span)
     columns = 2 if len(panels) < 7 else 3
     figure, axes = style.grid_of_panels(len(panels), columns=columns, height=1.7)
     for number, (axis, (title, quantity, of, logarithmic, curves, path, measure)) in enumerate(zip(axes, panels)):
-        draw_curves(comparison, axis, curves, title, quantity, of, logarithmic, path)
+        draw_curves(comparison, axis, curves, span, title, quantity, of, logarithmic, path)
         if measure is not None:
-            draw_references(axis, comparison, measure)
+            draw_references(axis, comparison, measure, window=window, span=span)
         axis.set_title(f"{style.letter(number)}  {axis.get_title()}", loc="left")
         axis.set_title("")
         axis.set_xlabel(f"$t$ [{unit}]" if number + columns >= len(axes) else "")
@@ -161,21 +181,24 @@ def panels_with_legend(comparison, panels, picture):
 
 
 def draw_measures(comparison, output):
-    comparison.expects = False
-    panels = []
-    for measure in comparison.json["measures"]:
-        if not measure["asked"] or measure["kind"] in ("stability", "particles", "cells"):
-            continue
-        curves = []
-        for run in comparison.runs:
-            found = measured_over_time(run.results, measure)
-            if found is not None:
-                curves.append((run, *cut(run, found[0], found[1])))
-        if curves:
-            name, quantity = measure["name"], readable(split_unit(measure["quantity"])[0])
-            panels.append((name, quantity, measure["unit"], False, curves,
-                           os.path.join(output, f"compare_measure_{name}.csv"), measure))
-    return panels_with_legend(comparison, panels, os.path.join(output, "compare_measures.png"))
+    written = []
+    for suffix, window in comparison.windows():
+        comparison.expects = False
+        panels = []
+        for measure in comparison.json["measures"]:
+            if not measure["asked"] or measure["kind"] in ("stability", "particles", "cells"):
+                continue
+            curves = []
+            for run in window:
+                found = measured_over_time(run.results, measure)
+                if found is not None:
+                    curves.append((run, *cut(window[run], found[0], found[1])))
+            if curves:
+                name, quantity = measure["name"], readable(split_unit(measure["quantity"])[0])
+                panels.append((name, quantity, measure["unit"], False, curves,
+                               os.path.join(output, f"compare_measure_{name}{suffix}.csv"), measure))
+        written += panels_with_legend(comparison, panels, os.path.join(output, f"compare_measures{suffix}.png"), window)
+    return written
 
 
 def own_steps(run, seconds, values):
@@ -183,12 +206,12 @@ def own_steps(run, seconds, values):
     limits = run.results.table("history.csv").get("dt_limit")
     keep = values > 0
     if isinstance(limits, list):
-        limits = np.array(limits)[-len(values):]
+        limits = np.array(limits)
         keep &= (limits != "end of stage") & (limits != "time of an expectation")
     return seconds[keep], values[keep]
 
 
-def draw_references(axis, comparison, measure, upwards=None):
+def draw_references(axis, comparison, measure, upwards=None, window=None, span=0.0):
     """What the case expects of the measure, thin and black: over time from where the comparison begins, or, where
     `upwards` says how it is drawn, over the coordinate of a profile."""
     for run in comparison.runs[:1]:
@@ -200,8 +223,10 @@ def draw_references(axis, comparison, measure, upwards=None):
                 continue
             x, y = curve[0], curve[1] * shown_unit(measure["unit"])[0]
             if upwards is None:
-                divisor, _ = style.time_unit(comparison.end())
-                x = (x + stage_start(run.results, expectation) - run.start) / divisor
+                if run not in window:
+                    continue
+                x, y = cut(window[run], x + stage_start(run.results, expectation), y)
+                x = x / style.time_unit(span)[0]
             elif upwards:
                 x, y = y, x
             axis.plot(x, y, color="black", linewidth=0.7, linestyle=REFERENCE, zorder=3)
@@ -209,24 +234,27 @@ def draw_references(axis, comparison, measure, upwards=None):
 
 
 def draw_history(comparison, output):
-    comparison.expects = False
-    panels = []
-    for name, logarithmic in HISTORY:
-        curves, unit = [], ""
-        for run in comparison.runs:
-            found = history_curve(run, name)
-            if found is not None:
-                seconds, values = cut(run, found[0], found[1])
-                if name == "dt":
-                    seconds, values = own_steps(run, seconds, values)
-                if len(values):
-                    curves.append((run, seconds, values))
-                unit = found[2]
-        if curves and (logarithmic or name == "dt" or any(np.ptp(values) > 0 for _, _, values in curves)):
-            title = "step" if name == "dt" else readable(name)
-            panels.append((title, "", unit, logarithmic, curves, os.path.join(output, f"compare_history_{name}.csv"),
-                           None))
-    return panels_with_legend(comparison, panels, os.path.join(output, "compare_history.png"))
+    written = []
+    for suffix, window in comparison.windows():
+        comparison.expects = False
+        panels = []
+        for name, logarithmic in HISTORY:
+            curves, unit = [], ""
+            for run in window:
+                found = history_curve(run, name)
+                if found is not None:
+                    seconds, values, unit = found
+                    if name == "dt":
+                        seconds, values = own_steps(run, seconds, values)
+                    seconds, values = cut(window[run], seconds, values)
+                    if len(values):
+                        curves.append((run, seconds, values))
+            if curves and (logarithmic or name == "dt" or any(np.ptp(values) > 0 for _, _, values in curves)):
+                title = "step" if name == "dt" else readable(name)
+                panels.append((title, "", unit, logarithmic, curves,
+                               os.path.join(output, f"compare_history_{name}{suffix}.csv"), None))
+        written += panels_with_legend(comparison, panels, os.path.join(output, f"compare_history{suffix}.png"), window)
+    return written
 
 
 def short_time_unit(seconds):

@@ -83,12 +83,12 @@ TEST_CASE("differences of curves that are linear between their points") {
   CHECK(d.l2 == doctest::Approx(std::sqrt(1.0 / 3)));  // t - 1 over [0, 2]
   CHECK(d.max == doctest::Approx(1));
   CHECK(d.max_at == 0);
-  // Only the time that both have; stages follow each other.
+  // Only the time that both have; stages follow each other and count alike.
   const Trace shorter{{{0, 1}, {1, 1}}, {{0, 4}, {0, 0}}}, two{{{0, 1}, {1, 1}}, {{0, 2}, {0, 3}}};
   const app::CurveDifference e = app::difference(shorter, two);
   CHECK(e.max == doctest::Approx(3));
   CHECK(e.max_at == doctest::Approx(3));
-  CHECK(e.l2 == doctest::Approx(std::sqrt((0 + 6.0) / 3)));
+  CHECK(e.l2 == doctest::Approx(std::sqrt((0 + 3.0) / 2)));
   CHECK(std::isnan(app::difference({{{0, 1}, {0, 0}}}, {{{2, 3}, {0, 0}}}).l2));
   // A curve without a number for a while is compared over the rest.
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -305,6 +305,9 @@ TEST_CASE("times count from the end of the search for equilibrium") {
     CHECK(run.at("start").get<double>() > 0);
     CHECK(run.at("time").get<double>() - run.at("start").get<double>() == doctest::Approx(0.05));
     CHECK(run.at("dt").at("mean").get<double>() < 0.01);  // not of the pseudo-time
+    REQUIRE(run.at("stages").size() == 1);
+    CHECK(run.at("stages")[0].at("name") == "settle");
+    CHECK(run.at("stages")[0].at("start") == run.at("start"));
   }
   CHECK(o.json.at("runs")[0].at("start") != o.json.at("runs")[1].at("start"));
   const auto& foot = measure(o.json, "foot");
