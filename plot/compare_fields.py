@@ -36,6 +36,18 @@ def series_of(run, name):
     return next((s for s in run.results.series if s.name == name), None)
 
 
+class Moment:
+    """A time of every run, counted from where the comparison or the stage of that name begins."""
+
+    def __init__(self, stage, starts, since, span):
+        self.stage, self.starts, self.span = stage, starts, span
+        self.time = {run: start + since for run, start in starts.items()}
+
+    def text(self, run, time):
+        text = style.time_text(time - self.starts[run], self.span)
+        return text.replace("t = ", f"{self.stage} ") if self.stage else text
+
+
 class Panel:
     def __init__(self, run, frame, shapes, values, section):
         self.run, self.frame, self.shapes, self.values, self.section = run, frame, shapes, values, section
@@ -55,9 +67,9 @@ def read_panel(run, series_name, name, time):
     return Panel(run, frame, shapes, values.astype(float), section)
 
 
-def draw_field(comparison, runs, series_name, name, times, output):
+def draw_field(comparison, runs, series_name, name, moments, output):
     """One figure; returns its path, None if there is nothing to see."""
-    rows = [[read_panel(run, series_name, name, time[run]) for run in runs] for time in times]
+    rows = [[read_panel(run, series_name, name, moment.time[run]) for run in runs] for moment in moments]
     panels = [panel for row in rows for panel in row if panel is not None and len(panel.shapes)]
     if not panels or not any(np.any(panel.values) for panel in panels):
         return None
@@ -66,8 +78,8 @@ def draw_field(comparison, runs, series_name, name, times, output):
     box = box_around(np.concatenate([panel.shapes.reshape(-1, 2) for panel in panels]), section)
     aspect = box[3] / box[2]
     tall = aspect > TALL
-    columns = len(runs) * (len(times) if tall else 1)
-    figure, axes, colour_axis = layout(len(runs) * len(times), aspect, columns, title_lines=2 if tall else 1)
+    columns = len(runs) * (len(moments) if tall else 1)
+    figure, axes, colour_axis = layout(len(runs) * len(moments), aspect, columns, title_lines=2 if tall else 1)
     low, high, extend = style.robust_limits([panel.values for panel in panels])
     drawn = None
     for number, (axis, panel) in enumerate(zip(axes, (panel for row in rows for panel in row))):
@@ -82,7 +94,7 @@ def draw_field(comparison, runs, series_name, name, times, output):
             continue
         drawn = draw_panel(figure, axis, panel.shapes, panel.values, field, (low, high), box, panel.section)
         draw_phreatic(axis, run.results.phreatic()(panel.frame.time), panel.section)
-        time = style.time_text(panel.frame.time - run.start, comparison.end())
+        time = moments[number // len(runs)].text(run, panel.frame.time)
         axis.set_title(label + ("\n" if tall else ", ") + time + (" (failed)" if run.failed else ""), loc="left")
         save_panel(os.path.join(output, f"compare_{series_name}_{name}_{comparison.runs.index(run) + 1}_"
                                         f"{panel.frame.number}.csv"),
@@ -96,20 +108,22 @@ def draw(comparison, output, names, times):
     runs = shown_runs(comparison)
     if not runs:
         return []
+    moments = []
     if times is not None:
-        times = [{run: run.start + time for run in runs} for time in times]
+        starts = {run: run.start for run in runs}
+        moments = [Moment("", starts, time, comparison.end()) for time in times]
     else:
-        windows = [window for _, window in comparison.windows() if all(run in window for run in runs)]
-        times = []
-        for window in windows:
+        windows = [(suffix, window) for suffix, window in comparison.windows() if all(run in window for run in runs)]
+        for suffix, window in windows:
             both = min(window[run][1] - window[run][0] for run in runs)
-            for share in SHARES if len(windows) == 1 else SHARES_OF_STAGES:
-                times.append({run: window[run][0] + share * both for run in runs})
+            starts = {run: window[run][0] for run in runs}
+            moments += [Moment(suffix.lstrip("_"), starts, share * both, both)
+                        for share in (SHARES_OF_STAGES if suffix else SHARES)]
     written = []
     for series_name in dict.fromkeys(s.name for run in runs for s in run.results.series):
         fluid = series_name.split("_")[0] == "fluid"
         for name in names or (FLUID_DEFAULT if fluid else SOIL_DEFAULT):
-            path = draw_field(comparison, runs, series_name, name, times, output)
+            path = draw_field(comparison, runs, series_name, name, moments, output)
             written += [path] if path else []
     for name in names or []:
         if not any(find_field(name, s) for run in runs for s in run.results.series):

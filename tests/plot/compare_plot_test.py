@@ -197,6 +197,24 @@ class ComparePlotTest(PictureTest):
         drawn = sorted(os.path.basename(path) for path in glob.glob(os.path.join(alone, "plots", "*.csv")))
         self.assertEqual(drawn, ["compare_soil_displacement_1_000004.csv", "compare_soil_displacement_2_000004.csv"])
 
+    def test_stages_of_far_different_durations_are_drawn_apart(self):
+        staged = os.path.join(self.root, "staged")
+        os.makedirs(staged)
+        runs = [dict(run, folder=os.path.join("..", run["folder"]), time=10.0,
+                     stages=[{"name": "rain", "start": 0.0, "time": 9.6}, {"name": "slide", "start": 9.6, "time": 0.4}])
+                for run in self.json["runs"][:2]]
+        with open(os.path.join(staged, "compare.json"), "w", encoding="utf-8") as file:
+            measures = [dict(m, differences=[]) for m in self.json["measures"]]  # of runs that are not here
+            json.dump(dict(self.json, runs=runs, measures=measures), file)
+        result = plot(staged)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        for name in ("compare_measures_rain.png", "compare_measures_slide.png", "compare_history_slide.png"):
+            self.check_picture(os.path.join(staged, "plots", name))
+        slide = columns(os.path.join(staged, "plots", "compare_measure_toe_slide.csv"))
+        seconds = [float(t) for t in slide["time[s]"]]
+        self.assertAlmostEqual(min(seconds), 0.0)
+        self.assertAlmostEqual(max(seconds), 0.4)
+
     def test_errors(self):
         self.check_error(plot(self.root, "--field", "porosty"), 2, "porosty", "such a field")
         broken = os.path.join(self.root, "broken")
