@@ -237,6 +237,17 @@ void check_unsaturated(Reader& reader) {
   }
 }
 
+void check_cell_means(Reader& reader) {
+  const Scene& scene = reader.scene;
+  const std::string key = "numerics.cell_means";
+  if (!scene.numerics.cell_means || reader.failed("numerics") || reader.failed("material")) return;
+  if (!scene.unsaturated()) reader.error(key, "needs a retention curve, and no material has one", "false");
+  for (const coupling::Stage& s : scene.stages)
+    if (s.mode != coupling::Stage::Mode::seepage)
+      return reader.error(key, "needs a rigid skeleton, and in stage \"" + s.name + "\" it is not",
+                          "false; or stages of mode \"seepage\" alone");
+}
+
 void check_stages(Reader& reader) {
   const Scene& scene = reader.scene;
   const coupling::Formulation* f = coupling::find_formulation(scene.formulation);
@@ -269,6 +280,7 @@ void check_water(Reader& reader) {
   check_phreatic_line(reader);
   check_water_boundaries(reader);
   check_unsaturated(reader);
+  check_cell_means(reader);
   check_stages(reader);
   if (!f || reader.failed("formulation") || f->carrier == coupling::WaterCarrier::none) return;
   check_materials(reader);

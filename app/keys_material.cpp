@@ -241,7 +241,7 @@ const Table<WaterSpec>& pore_water_keys() {
                               {"field", W::Initial::field}}),
           &W::initial,
           "Initial pore pressure in saturated soil: zero, hydrostatic below the phreatic line (or the soil's "
-          "surface), the steady state of the boundaries, or the field given by initial_pressure, "
+          "surface), the steady state of the boundaries at time 0, or the field given by initial_pressure, "
           "initial_gradient and initial_datum.");
     const auto field = [](const W& w) { return w.initial == W::Initial::field; };
     t.add("initial_pressure", number(dimension::kPressure), &W::initial_pressure,

@@ -121,6 +121,11 @@ const Table<NumericsSpec>& numerics_keys() {
           "Relative residual to which the pressure system is solved; of unsaturated flow, water left over in "
           "a step as a share of what moves, a hundred times as much where the skeleton moves. Formulation "
           "higo solves no system in stages of motion.");
+    t.add(
+        "cell_means", boolean(), &NumericsSpec::cell_means,
+        "Retention curves and flows through upright faces as means over the height of a cell in which water "
+        "hangs at rest: a free surface then passes evenly through cells that are larger than the capillary "
+        "fringe. Only where all stages are of mode \"seepage\".");
     return t;
   }();
   return table;

@@ -31,6 +31,7 @@ using coupling::FlowExit;
 using coupling::FlowNet;
 using coupling::Measure;
 using coupling::Scene;
+using coupling::SeepageEnd;
 using coupling::Simulation;
 using coupling::Stage;
 using coupling::TimeTable;
@@ -155,6 +156,15 @@ struct Exits {
   const FlowExit* heave = nullptr;     // the upward one with the least factor against heave
 };
 
+Json json_of(const SeepageEnd& e, const Scene& scene) {
+  Json j = Json::object();
+  j["place"] = place_of(e.place);
+  j["slope"] = e.slope;
+  j["boundary"] = name_of(scene, e.boundary);
+  j["within_cell"] = e.within;
+  return j;
+}
+
 Exits find(const FlowNet& net) {
   Exits found;
   for (const FlowExit& e : net.exits) {
@@ -187,6 +197,9 @@ Json flow_json(const Simulation& s, const std::string& case_file, const FlowNet&
   psi["defect"] = net.defect;
   root["stream_function"] = std::move(psi);
   root["largest_exit_gradient"] = exits.steepest ? json_of(*exits.steepest, scene) : Json();
+  Json ends = Json::array();
+  for (const SeepageEnd& e : net.seepage_ends) ends.push_back(json_of(e, scene));
+  root["phreatic_exits"] = std::move(ends);
   root["heave"] = exits.heave ? json_of(*exits.heave, scene) : Json();
   return root;
 }
@@ -204,8 +217,8 @@ void write_tables(const RunFolder& folder, const Scene& scene, const FlowNet& ne
                std::string_view(name_of(scene, e.boundary)), e.gradient, e.critical});
 }
 
-std::string at(const FlowExit& e) {
-  return " at (" + digits(e.place[0], 4) + ", " + digits(e.place[1], 4) + ") m";
+std::string at(const coupling::Vector3& place) {
+  return " at (" + digits(place[0], 4) + ", " + digits(place[1], 4) + ") m";
 }
 
 void tell(const Simulation& s, const FlowNet& net, const Exits& exits, Log& log) {
@@ -220,11 +233,14 @@ void tell(const Simulation& s, const FlowNet& net, const Exits& exits, Log& log)
   if (s.scene().dimension() == 3) return;
   log.line("flow net     stream function from " + digits(net.lowest, 5) + " to " + digits(net.highest, 5) +
            unit + ", ways around a cell differ by " + digits(net.defect, 2) + " of the range");
+  for (const SeepageEnd& e : net.seepage_ends)
+    log.line("phreatic     line leaves the soil" + at(e.place) + ", " + name_of(s.scene(), e.boundary) +
+             (e.within ? "" : ", to a cell"));
   if (exits.steepest)
-    log.line("exit         largest gradient " + digits(exits.steepest->gradient, 4) + at(*exits.steepest) +
-             ", " + name_of(s.scene(), exits.steepest->boundary));
+    log.line("exit         largest gradient " + digits(exits.steepest->gradient, 4) +
+             at(exits.steepest->place) + ", " + name_of(s.scene(), exits.steepest->boundary));
   if (exits.heave)
-    log.line("heave        factor " + digits(exits.heave->heave_factor(), 4) + at(*exits.heave) +
+    log.line("heave        factor " + digits(exits.heave->heave_factor(), 4) + at(exits.heave->place) +
              ": gradient " + digits(exits.heave->gradient, 4) + ", critical " +
              digits(exits.heave->critical, 4));
   else
@@ -277,6 +293,11 @@ Scene seepage_scene(const Scene& given, std::vector<std::string>& remarks) {
   if (scene.stages.empty()) {
     hold_conditions(scene);
     scene.stages.push_back(steady_stage(scene));
+    if (scene.unsaturated()) {
+      scene.water.initial = coupling::WaterSpec::Initial::steady;
+      scene.numerics.cell_means = true;
+      remarks.push_back("free surface within cells: retention curves are means over their height");
+    }
     scene.output.every = scene.output.history_every = 0;
     for (Measure& m : scene.measures) m.every = 0;
     remarks.push_back("steady flow  under the conditions of time 0");

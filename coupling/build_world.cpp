@@ -264,9 +264,11 @@ std::unique_ptr<World<D>> build_world(const Scene& scene) {
     water.bulk_modulus = scene.water.bulk_modulus;
     water.gravity = world->gravity;
     world->pore_water = std::make_unique<PoreWater<D>>(world->skeleton.grid(), scene.grid.space, water);
-    if (scene.unsaturated())
+    if (scene.unsaturated()) {
       world->pore_water->unsaturated =
           std::make_unique<UnsaturatedWater<D>>(world->pore_water->cells, water, soils_of<D>(scene));
+      world->pore_water->unsaturated->field.set_averages(scene.numerics.cell_means);
+    }
     world->pore_water->pressure.set_tolerance(scene.numerics.solver_tolerance);
     world->pore_water->compressible = formulation->pressure == PressureMethod::compressible;
     set_saturation(*world);

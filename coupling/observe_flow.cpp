@@ -8,6 +8,7 @@
 
 #include "coupling/simulation_run.hpp"
 #include "fdm/flow_results.hpp"
+#include "fdm/phreatic_exit.hpp"
 
 namespace polder::coupling {
 namespace {
@@ -81,8 +82,14 @@ std::vector<std::pair<double, double>> Simulation::Run<D>::phreatic_line() const
   std::vector<std::pair<double, double>> line;
   if (!world->pore_water || D != 2) return line;
   if constexpr (D == 2)
-    if (world->pore_water->unsaturated)
-      return fdm::phreatic_line(world->pore_water->cells, world->pore_water->pore_pressure());
+    if (world->pore_water->unsaturated) {
+      const PoreWater<D>& w = *world->pore_water;
+      line = fdm::phreatic_line(w.cells, w.pore_pressure());
+      for (const fdm::PhreaticExit& e : fdm::phreatic_exits(w.cells, w.pore_pressure()))
+        if (e.found) line.emplace_back(e.place[0], e.place[1]);
+      std::sort(line.begin(), line.end());
+      return line;
+    }
   // Saturated soil has its surface where its cells end.
   const PoreWater<D>& water = *world->pore_water;
   const Grid<D>& grid = world->skeleton.grid();
@@ -118,6 +125,9 @@ FlowNet Simulation::Run<D>::flow_net() const {
     }
     net.lowest = psi.lowest, net.highest = psi.highest, net.defect = psi.defect;
     net.exits = find_exits(*world);
+    if (!water.unsaturated) return net;
+    for (const fdm::PhreaticExit& e : fdm::phreatic_exits(water.cells, water.pore_pressure()))
+      net.seepage_ends.push_back({{e.place[0], e.place[1], 0}, e.slope, e.boundary, e.found});
   }
   return net;
 }

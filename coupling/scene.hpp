@@ -81,6 +81,9 @@ struct NumericsSpec {
   std::optional<double> time_step;  // fixed step [s]; warned about or refused beyond the limit
   double rhie_chow = 0.05;          // chi [-]
   double solver_tolerance = 1e-7;   // relative, pressure
+  // Retention curves and flows through upright faces as means over the height of a cell: free surfaces within
+  // cells. Rigid skeleton only.
+  bool cell_means = false;
   bool operator==(const NumericsSpec&) const = default;
 };
 

@@ -67,6 +67,14 @@ struct FlowExit {
   double heave_factor() const { return critical / gradient; }
 };
 
+// Where the phreatic line leaves the soil: the upper end of a seepage face (fdm/phreatic_exit.hpp).
+struct SeepageEnd {
+  Vector3 place{};      // [m]
+  double slope = 0;     // of the face against the horizontal [rad]
+  int boundary = -1;    // number of the water boundary, -1: the soil's surface without a name
+  bool within = false;  // to a part of a cell; else the highest cell that lets water out
+};
+
 // What a plane flow through the cells amounts to at present (fdm/flow_results.hpp).
 struct FlowNet {
   // Stream function at the nodes, x, y [m] and psi [m2/s] each (axisymmetric: [m3/s] per radian).
@@ -74,6 +82,7 @@ struct FlowNet {
   double lowest = 0, highest = 0;  // of it
   double defect = 0;  // largest disagreement of two ways around a cell over the range: 0 in steady flow
   std::vector<FlowExit> exits;
+  std::vector<SeepageEnd> seepage_ends;
 };
 
 // Reads or writes every number that decides what comes next. Implemented by checkpoints.

@@ -300,7 +300,19 @@ void set_unsaturated_state(World<D>& world) {
   }
   if (spec.initial == WaterSpec::Initial::steady) {
     fdm::UnsaturatedStep step = make_step(world, kFirstSteadyStep);
-    const fdm::StepReport r = u.field.steady(step);
+    u.field.set_tolerance(world.scene.numerics.solver_tolerance);
+    const Reals start = pressure, held = saturation;
+    fdm::StepReport r = u.field.steady(step);
+    if (!r.converged && !world.scene.numerics.cell_means) {
+      // Curves that are too steep for values at centres have their means over cells. What follows begins with
+      // that pressure and the saturation that goes with it.
+      pressure = start, saturation = held;
+      u.field.set_averages(true);
+      r = u.field.steady(step);
+      u.field.set_averages(false);
+      for (const fdm::ActiveCell<D>& cell : w.cells.cells())
+        saturation[cell.slot] = u.field.curve(u.soil[cell.slot]).saturation(pressure[cell.slot]);
+    }
     if (!r.converged)
       throw NumericalError("the steady flow that the pore water starts from was not found: " +
                            std::to_string(r.iterations) + " iterations, residual " + fdm::number(r.residual));
