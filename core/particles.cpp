@@ -34,6 +34,7 @@ std::vector<ParticleField> ParticleSet<D>::fields() {
   if (!suction_stress.empty()) add("suction_stress", suction_stress);
   if (!conductivity.empty()) add("conductivity", conductivity);
   if (!wet.empty()) add("wet", wet);
+  if (!nodal_weight.empty()) add("nodal_weight", nodal_weight);
   if (group_by_cell) add("home_cell", home_cell);
   return all;
 }
@@ -42,9 +43,19 @@ template <int D>
 void ParticleSet<D>::append(int n) {
   const int before = slots();
   for (ParticleField& f : fields()) f.values->resize(before + n, 0.0);
-  for (int i = 0; i < n; ++i) id.push_back(count_ + i);
+  for (int i = 0; i < n; ++i) id.push_back(next_id_ + i);
+  next_id_ += n;
   count_ += n;
   index_ids();
+}
+
+template <int D>
+void ParticleSet<D>::remove(int p) {
+  slot_of_id_[id[p]] = -1;
+  id[p] = -1;
+  mass[p] = volume[p] = 0;
+  for (int d = 0; d < D; ++d) velocity[d][p] = 0;
+  --count_;
 }
 
 // A point this far beyond a side of the grid lies on it but for rounding [cells].
@@ -135,14 +146,15 @@ void ParticleSet<D>::sort(const Grid<D>& grid) {
 }
 
 template <int D>
-void ParticleSet<D>::restore(int count) {
-  count_ = count;
+void ParticleSet<D>::restore(int next_id) {
+  next_id_ = next_id;
+  count_ = static_cast<int>(std::count_if(id.begin(), id.end(), [](int i) { return i >= 0; }));
   index_ids();
 }
 
 template <int D>
 void ParticleSet<D>::index_ids() {
-  slot_of_id_.assign(count_, -1);
+  slot_of_id_.assign(next_id_, -1);
   for (int p = 0; p < slots(); ++p)
     if (id[p] >= 0) slot_of_id_[id[p]] = p;
 }

@@ -55,6 +55,10 @@ class ParticleSet {
   bool group_by_cell = false;  // keep home_cell
   Reals home_cell;             // cell inside its block where the last sort found the point
   Reals wet;                   // 1 where the pores are full of water, 0 above the phreatic line
+  // Where soil and water have points of their own: what a unit of volume adds to the nodes' eighth number,
+  // see mpm::Transfer. Of soil: the part of it that pore pressure pushes [-]; of water: drag of the pores
+  // around it [Pa s/m2].
+  Reals nodal_weight;
 
   std::vector<int> id;        // -1 = padding
   std::vector<Range> ranges;  // one for each occupied block of the grid
@@ -62,8 +66,11 @@ class ParticleSet {
   int slots() const { return static_cast<int>(id.size()); }  // with padding
   int count() const { return count_; }                       // points with mass
 
-  // Add points: give every array of fields() `n` more entries (zero); ids continue.
+  // Add points: give every array of fields() `n` more entries (zero); ids continue after all ids ever given.
+  // They belong to no block before the next sort().
   void append(int n);
+  // Take a point away: until the next sort() its entry stays as one of padding, at the same place.
+  void remove(int p);
   // All arrays in use.
   std::vector<ParticleField> fields();
 
@@ -71,14 +78,16 @@ class ParticleSet {
   std::vector<int> occupied_block_numbers(const Grid<D>& grid) const;
   // Put the points in order of the grid's blocks (grid.activate() has been called for all sets).
   void sort(const Grid<D>& grid);
-  // Position of the point with this id in the arrays.
+  // Position of the point with this id in the arrays, -1 when it was taken away.
   int find(int id) const { return slot_of_id_[id]; }
+  int next_id() const { return next_id_; }  // one beyond the last id ever given
   // After the arrays were filled from a checkpoint: rebuild what is derived from them.
-  void restore(int count);
+  void restore(int next_id);
 
  private:
   void index_ids();
   int count_ = 0;
+  int next_id_ = 0;
   std::vector<int> slot_of_id_;
 };
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "core/error.hpp"
 #include "core/threads.hpp"
+#include "mpm/runaway.hpp"
 
 namespace polder::mpm {
 namespace {
@@ -56,13 +56,15 @@ void Skeleton<D>::allocate() {
 template <int D>
 bool Skeleton<D>::sort(bool force) {
   if (!force && travelled_ <= kSkin) return false;
+  std::vector<ParticleSet<D>*> sets = attached_;
+  for (const auto& body : bodies_) sets.push_back(body.get());
   std::vector<int> occupied;
-  for (const auto& body : bodies_) {
-    const std::vector<int> numbers = body->occupied_block_numbers(grid_);
+  for (const ParticleSet<D>* set : sets) {
+    const std::vector<int> numbers = set->occupied_block_numbers(grid_);
     occupied.insert(occupied.end(), numbers.begin(), numbers.end());
   }
   const bool changed = grid_.activate(std::move(occupied));
-  for (const auto& body : bodies_) body->sort(grid_);
+  for (ParticleSet<D>* set : sets) set->sort(grid_);
   if (changed) allocate();
   travelled_ = 0;
   return changed;
@@ -211,19 +213,7 @@ MoveResult Skeleton<D>::move(double time, const MoveOptions& o, const Reals* bef
   for (SurfaceLoad<D>& load : loads_) load.move(grid_, options_.shape, dt, v, sums_);
   mapped_ = false;
   travelled_ += r.largest_displacement;
-  if (!r.finite || r.largest_displacement > kSkin) {
-    const ParticleSet<D>& set = *bodies_[r.fastest_body];
-    const int p = r.fastest_slot;
-    char text[320];
-    std::snprintf(text, sizeof text,
-                  "%s: point %d of body '%s' near (%.6g, %.6g%s) moves at %.4g m/s, %.3g cells in a step of "
-                  "%.4g s, at time %.6g s",
-                  r.finite ? "runaway velocity" : "velocity is not finite", set.id[p], set.name.c_str(),
-                  set.position[0][p], set.position[1][p],
-                  D == 3 ? (", " + std::to_string(set.position[D - 1][p])).c_str() : "", r.largest_speed,
-                  r.largest_displacement, dt, time);
-    throw NumericalError(text);
-  }
+  if (r.fastest_body >= 0) require_calm(r, *bodies_[r.fastest_body], time, dt);
   return r;
 }
 

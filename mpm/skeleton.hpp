@@ -71,6 +71,8 @@ class Skeleton {
   // componentwise.
   void predict(double dt, const Point<D>& gravity, double damping, const Reals* acceleration);
 
+  // What another phase does to the grains may be added between predict() and constrain() [slots * 4].
+  Reals& v_trial() { return v_trial_; }
   // v_new = v_trial under the boundaries at `time`; keeps their reactions and the out-of-balance force.
   void constrain(double time, double dt);
 
@@ -111,8 +113,12 @@ class Skeleton {
   // Sum of surface loads in the last scatter [N].
   const Point<D>& applied_load() const { return applied_load_; }
 
-  // Distance travelled since the last sort [cells]; part of a checkpoint.
+  // Points of another phase on the same grid, sorted together with the bodies. `set` must outlive the
+  // skeleton's last sort().
+  void attach(ParticleSet<D>& set) { attached_.push_back(&set); }
+  // Distance travelled since the last sort [cells]; part of a checkpoint. Attached points add theirs.
   double travelled() const { return travelled_; }
+  void add_travel(double cells) { travelled_ += cells; }
   void restore(double travelled, double mass_floor, const std::vector<int>& occupied_blocks);
 
   // Largest drained P-wave speed over all bodies, with the water in the pores counted as mass [m/s].
@@ -130,6 +136,7 @@ class Skeleton {
   BoundarySet<D> boundaries_;
   std::vector<SurfaceLoad<D>> loads_;
   std::vector<std::unique_ptr<ParticleSet<D>>> bodies_;
+  std::vector<ParticleSet<D>*> attached_;
   std::vector<std::shared_ptr<const void>> laws_;  // one for each body
   Transfer<D> transfer_;
   Reals sums_, v_old_, v_trial_, v_new_, v_map_, v_before_;

@@ -6,8 +6,9 @@
 // No atomics, no colours: the bits do not depend on the number of threads.
 //
 // Node sums are eight numbers a node: 2D {m, px, py, fx, fy, V, -, -}, 3D {m, px, py, pz, fx, fy, fz, V}:
-// mass, momentum, force of stress and loads, volume of saturated soil (0 in dry scenes). Velocities are four
-// numbers a node (padded).
+// mass, momentum, force of stress and loads, volume that pore pressure acts on: of saturated soil, of its
+// grains where the water has points of its own, 0 in dry scenes; of points of water their drag instead [N
+// s/m]. Velocities are four numbers a node (padded).
 #pragma once
 
 #include <memory>
@@ -23,7 +24,8 @@ namespace polder::mpm {
 
 enum class AffineKind { none, apic, tpic };
 
-// One body as the kernels see it. law points to a polder::simd_*::Law<D> of the running vector level.
+// One body as the kernels see it. law points to a polder::simd_*::Law<D> of the running vector level; points
+// without one move, and keep their stress, volume and domain.
 // bulk_modulus of laws that open freely (a cone's apex): where no compression is left, dry points change
 // their volume only as much as their stress says; 0: volume follows the motion.
 template <int D>

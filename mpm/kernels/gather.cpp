@@ -214,15 +214,16 @@ POLDER_INLINE void strain_of(const Pack* mid, Pack hoop_strain, Pack* strain) {
 // Motion and domain of a pack. gradient: dt dv_i/dx_j.
 template <int D>
 POLDER_INLINE void move_pack(ParticleSet<D>& set, int p, Mask real, const Pack* x, const Pack* half_size,
-                             const Pack* carried, const Pack* gradient, double dt, double h, int body,
-                             BlockResult& result) {
+                             const Pack* carried, const Pack* gradient, bool stretches, double dt, double h,
+                             int body, BlockResult& result) {
   Pack fast = Pack{}, far = Pack{};
   for (int d = 0; d < D; ++d) {
     const Pack step = select(real, dt * carried[d], Pack{});
     store(&set.position[d][p], x[d] + step);
-    store(&set.half_size[d][p],
-          clamp(half_size[d] * (1.0 + gradient[d * D + d]), 0.5 * set.reference_half_size,
-                std::min(1.5 * set.reference_half_size, 0.5 * h)));
+    if (stretches)
+      store(&set.half_size[d][p],
+            clamp(half_size[d] * (1.0 + gradient[d * D + d]), 0.5 * set.reference_half_size,
+                  std::min(1.5 * set.reference_half_size, 0.5 * h)));
     far = max(far, abs(step) * (1 / h));
     fast += carried[d] * carried[d];
   }
@@ -351,7 +352,8 @@ POLDER_INLINE void gather_motion(const MoveFrame<D>& m, ParticleSet<D>& set, int
   // Padding points feel nothing, so that their state stays harmless.
   for (int k = 0; k < D * D; ++k) motion.gradient[k] = select(real, dt * q.gradient[k], Pack{});
   motion.hoop = m.hoop ? select(real, dt * q.b[0] / x[0], Pack{}) : Pack{};
-  move_pack<D>(set, p, real, x, l, carried, motion.gradient, dt, m.h, body, result);
+  move_pack<D>(set, p, real, x, l, carried, motion.gradient, m.transfer.bodies[body].law != nullptr, dt, m.h,
+               body, result);
 }
 
 // Second half: strain and rotated stress for the law. They refer to the midpoint of the step: a rigid
@@ -376,6 +378,7 @@ template <int D>
 POLDER_INLINE void apply_law(const MoveFrame<D>& m, ParticleSet<D>& set, int body, int first, int packs,
                              const Motion<D>* motion) {
   const auto* law = static_cast<const Law<D>*>(m.transfer.bodies[body].law);
+  if (law == nullptr) return;
   StressBatch<D> batch;
   batch.packs = packs;
   BeforeLaw before[kBatchPacks];

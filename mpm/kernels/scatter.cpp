@@ -50,7 +50,10 @@ POLDER_INLINE void load_fields(const mpm::Transfer<D>& transfer, const ParticleS
     const Pack radius = load(&set.position[0][p]);
     f[kForce] -= volume * sigma[2] / radius;
   }
-  f[mpm::Transfer<D>::kVolume] = set.wet.empty() ? Pack{} : volume * load(&set.wet[p]);
+  if (!set.nodal_weight.empty())
+    f[mpm::Transfer<D>::kVolume] = volume * load(&set.nodal_weight[p]);
+  else if (!set.wet.empty())
+    f[mpm::Transfer<D>::kVolume] = volume * load(&set.wet[p]);
   to_nodes<8>(f, out.value);
 
   constexpr int xy = 3, yz = D == 3 ? 4 : 0, zx = D == 3 ? 5 : 0;
@@ -170,8 +173,9 @@ void scatter_cells_of(mpm::Transfer<D>& transfer) {
         const Pack solid = load(&set.mass[p]), volume = select(solid > 0, load(&set.volume[p]), Pack{});
         const Pack wet = load(&set.wet[p]) * volume;
         const Pack grains = solid * (1 / set.density_solid);
-        Pack fields[4] = {wet, load(&set.wet[p]) * grains, wet * load(&set.conductivity[p]),
-                          load(&set.pore_water[p]) * (volume - grains)};
+        Pack fields[4] = {wet, load(&set.wet[p]) * grains};
+        if (!set.conductivity.empty()) fields[2] = wet * load(&set.conductivity[p]);
+        if (!set.pore_water.empty()) fields[3] = load(&set.pore_water[p]) * (volume - grains);
         Reg<4> node[kLanes];
         to_nodes<4>(fields, node);
         Mask start = Mask{};
