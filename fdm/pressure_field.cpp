@@ -142,6 +142,13 @@ void PressureField<D>::require_current(std::size_t slots) const {
     throw std::logic_error("PressureField: an array does not cover the grid");
 }
 
+template <int D>
+void PressureField<D>::require_mixture(const PressureStep& step) const {
+  const std::size_t faces = cells_.interior_faces().size() + cells_.boundary_faces().size();
+  if (step.divergence.size() < static_cast<std::size_t>(cells_.count()) || step.face_mobility.size() < faces)
+    throw std::logic_error("PressureField: the mixture's flow does not cover the cells");
+}
+
 // ---- assembly
 // -------------------------------------------------------------------------------------------------------
 
@@ -154,18 +161,21 @@ double PressureField<D>::darcy_outflow(const BoundaryFace<D>& f, double darcy_mo
 }
 
 template <int D>
-void PressureField<D>::face_terms(std::span<const double> mobility, std::span<const double> darcy_mobility,
-                                  double chi, std::span<const double> node_gradient) {
+void PressureField<D>::face_terms(const PressureStep& step, bool inertia) {
   const auto cells = cells_.cells();
   const auto interior = cells_.interior_faces();
   const auto boundary = cells_.boundary_faces();
   const int n_interior = static_cast<int>(interior.size());
-  const double per_spacing = 1 / cells_.grid().spacing();
-  const bool inertia = !mobility.empty();
+  const double per_spacing = 1 / cells_.grid().spacing(), chi = step.rhie_chow;
+  const std::span<const double> darcy_mobility = step.darcy_mobility;
+  std::span<const double> node_gradient = step.pressure_gradient;
   if (inertia && chi > 0 && node_gradient.empty()) {
     gradient_.evaluate(cells_, p_, BoundaryValues::present, WallNormal::none, node_grad_);
     node_gradient = node_grad_;
   }
+  const auto mobility_of = [&](int face, const FaceNodes<D>& nodes) {
+    return step.face_mobility.empty() ? face_mobility<D>(nodes, step.mobility) : step.face_mobility[face];
+  };
 
   for_each(n_interior, [&](int i) {
     const InteriorFace<D>& f = interior[i];
@@ -175,7 +185,7 @@ void PressureField<D>::face_terms(std::span<const double> mobility, std::span<co
     double flow = kappa * (gradient - water_.density * water_.gravity[f.axis]);
     double conductance = kappa;
     if (inertia) {
-      const double lam = face_mobility<D>(f.nodes, mobility);
+      const double lam = mobility_of(i, f.nodes);
       conductance += lam * (1 + chi);
       if (chi > 0) {
         double mean = 0;
@@ -190,7 +200,7 @@ void PressureField<D>::face_terms(std::span<const double> mobility, std::span<co
   for_each(static_cast<int>(boundary.size()), [&](int b) {
     const BoundaryFace<D>& f = boundary[b];
     const double kappa = darcy_mobility[cells[f.cell].slot];
-    const double lam = inertia && f.open ? face_mobility<D>(f.nodes, mobility) : 0;
+    const double lam = inertia && f.open ? mobility_of(n_interior + b, f.nodes) : 0;
     boundary_darcy_[b] = kappa;
     boundary_inertia_[b] = lam * f.area / f.distance;
     flow_[n_interior + b] = -darcy_outflow(f, kappa);
@@ -281,8 +291,12 @@ SolveReport PressureField<D>::solve_increment() {
 template <int D>
 SolveReport PressureField<D>::solve(const PressureStep& step) {
   const std::size_t slots = cells_.grid().slots();
-  require_current(std::min({p_.size(), step.velocity.size() / kStride, step.mobility.size(),
-                            step.porosity.size(), step.darcy_mobility.size()}));
+  require_current(std::min({p_.size(), step.porosity.size(), step.darcy_mobility.size()}));
+  const bool mixture = !step.divergence.empty();
+  if (mixture)
+    require_mixture(step);
+  else
+    require_current(std::min(step.velocity.size() / kStride, step.mobility.size()));
   if (!step.pressure_gradient.empty() && step.pressure_gradient.size() < slots * kStride)
     throw std::logic_error("PressureField: the pressure gradient does not cover the grid");
   if (!(step.dt > 0)) throw std::logic_error("PressureField: the time step must be positive");
@@ -291,9 +305,9 @@ SolveReport PressureField<D>::solve(const PressureStep& step) {
   if (p_.size() != slots)
     throw std::logic_error("PressureField: the grid changed and carry() was not called");
 
-  face_terms(step.mobility, step.darcy_mobility, step.rhie_chow, step.pressure_gradient);
+  face_terms(step, true);
   for_each(cells_.count(), [&](int c) {
-    divergence_[c] = cell_outflow<D>(cells[c], step.velocity);
+    divergence_[c] = mixture ? step.divergence[c] : cell_outflow<D>(cells[c], step.velocity);
     storage_[c] = step.porosity[cells[c].slot] / water_.bulk_modulus * cells[c].volume / step.dt;
   });
   const SolveReport report = solve_increment();
@@ -326,8 +340,10 @@ SolveReport PressureField<D>::steady(std::span<const double> darcy_mobility) {
   std::fill(storage_.begin(), storage_.end(), 0.0);
   std::fill(divergence_.begin(), divergence_.end(), 0.0);
   SolveReport report;
+  PressureStep step;
+  step.darcy_mobility = darcy_mobility;
   for (int pass = 0; pass < 2; ++pass) {  // the second solves for what rounding and tolerance left
-    face_terms({}, darcy_mobility, 0, {});
+    face_terms(step, false);
     const SolveReport r = solve_increment();
     report.iterations += r.iterations;
     report.residual = r.residual;

@@ -52,6 +52,11 @@ struct PressureStep {
   // node_gradient(pressure(), present) before the step if the caller has it, else empty. Treatment of walls
   // does not matter: the faces inside need no normal gradient at one.
   std::span<const double> pressure_gradient = {};
+  // Where the water has a velocity of its own (fdm/mixture_flow.hpp) these stand in place of `velocity` and
+  // `mobility`: predicted volume flow out of each active cell [m3/s], and mobility of each face, interior
+  // ones first [m3 s/kg].
+  std::span<const double> divergence = {};
+  std::span<const double> face_mobility = {};
 };
 
 // Water leaving the soil through ... [m3/s]
@@ -141,13 +146,13 @@ class PressureField {
 
  private:
   double darcy_outflow(const BoundaryFace<D>& face, double darcy_mobility) const;
-  void face_terms(std::span<const double> mobility, std::span<const double> darcy_mobility, double chi,
-                  std::span<const double> pressure_gradient);
+  void face_terms(const PressureStep& step, bool inertia);
   void gather_sinks();
   void pin_closed_basins();
   SolveReport solve_increment();
   void fill_new_cells();
   void require_current(std::size_t slots) const;
+  void require_mixture(const PressureStep& step) const;
 
   const WaterCells<D>& cells_;
   WaterProperties<D> water_;

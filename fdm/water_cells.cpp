@@ -8,6 +8,8 @@
 namespace polder::fdm {
 namespace {
 
+constexpr double kFarthestSurface = 20;  // [cells]
+
 // Whether two sets of conditions differ only in their values, not in where they apply.
 template <int D>
 bool same_geometry(const WaterConditions<D>& a, const WaterConditions<D>& b) {
@@ -34,6 +36,18 @@ FaceNodes<D> face_nodes(const ActiveCell<D>& cell, int axis, bool upper) {
   for (int corner = 0; corner < ipow(2, D); ++corner)
     if (((corner >> axis) & 1) == static_cast<int>(upper)) nodes[n++] = cell.nodes[corner];
   return nodes;
+}
+
+// Distance from a cell's centre to the surface along an axis, in cells, from the fills of the cell, of the
+// one beyond it and of the one behind it. Across a surface: by volume. Along one that is but slightly
+// inclined: the surface stands at fill - 1/2 above the centres, and meets the line through them where that
+// falls to zero; else a column just too low to be active would draw water from its neighbour as over an edge.
+double surface_distance(double behind, double own, double beyond) {
+  const double across = own + beyond - 0.5, drop = behind - beyond;
+  const double along = std::clamp(10 * (1 - own), 0.0, 1.0) * std::clamp((0.8 - drop) / 0.3, 0.0, 1.0);
+  if (along == 0) return across;
+  const double meets = std::min((own - 0.5) / std::max(own - beyond, 1e-9), kFarthestSurface);
+  return across + along * (meets - across);
 }
 
 }  // namespace
@@ -229,8 +243,12 @@ void WaterCells<D>::refresh_distances(std::span<const double> fill) {
     const Kind kind = f.boundary < 0 ? Kind::surface : conditions_.boundaries[f.boundary].kind;
     const double value = f.boundary < 0 ? 0 : conditions_.boundaries[f.boundary].value;
     if (kind == Kind::surface || f.free_surface) {
-      const double beyond = f.outside < 0 ? 0 : std::min(fill[f.outside], 1.0);
-      f.distance = h * (std::min(fill[c.slot], 1.0) + beyond - 0.5);
+      const double own = std::min(fill[c.slot], 1.0),
+                   beyond = f.outside < 0 ? 0 : std::min(fill[f.outside], 1.0);
+      Index<D> behind = c.index;
+      behind[f.axis] -= f.outward;
+      const int slot = grid_.is_cell(behind) ? grid_.slot(behind) : -1;
+      f.distance = h * surface_distance(slot < 0 ? own : std::min(fill[slot], 1.0), own, beyond);
     }
     if (f.axis == D - 1) height += f.outward * f.distance;
     switch (kind) {
