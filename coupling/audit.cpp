@@ -6,6 +6,28 @@
 #include "core/threads.hpp"
 
 namespace polder::coupling {
+namespace {
+
+template <int D>
+void add_layer(const WaterLayer<D>& layer, Totals& t) {
+  const ParticleSet<D>& set = layer.fluid.points();
+  for (int p = 0; p < set.slots(); ++p) {
+    if (set.id[p] < 0) continue;
+    double square = 0;
+    for (int d = 0; d < D; ++d) {
+      const double v = set.velocity[d][p];
+      square += v * v;
+      t.momentum[d] += set.mass[p] * v;
+    }
+    t.water_volume += set.volume[p];
+    t.kinetic_energy += 0.5 * set.mass[p] * square;
+    t.largest_speed = std::max(t.largest_speed, square);
+    t.water_runout = std::max(t.water_runout, set.position[0][p] + set.half_size[0][p]);
+    t.water_height = std::max(t.water_height, set.position[D - 1][p] + set.half_size[D - 1][p]);
+  }
+}
+
+}  // namespace
 
 template <int D>
 Audit<D>::Audit(const World<D>& world) {
@@ -54,6 +76,25 @@ void Audit<D>::add_step(const World<D>& world, double dt, double damping, double
       }
     }
   });
+  if (water != nullptr && water->layer) {
+    const mpm::FluidLayer<D>& fluid = water->layer->fluid;
+    parallel_for(k.grid().blocks(), [&](int block) {
+      Part& part = parts[block];
+      for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
+        const double mass = fluid.sums()[static_cast<std::size_t>(i) * 8];
+        if (!(mass > 0)) continue;
+        for (int d = 0; d < D; ++d) {
+          const std::size_t j = static_cast<std::size_t>(i) * 4 + d;
+          const double v0 = fluid.velocity_old()[j], v1 = fluid.velocity()[j], mean = 0.5 * (v0 + v1);
+          const double weight = dt * mass * gravity * world.gravity[d];
+          part.work.gravity += weight * mean;
+          part.work.water += (mass * (v1 - v0) - weight) * mean;
+          part.impulse[d] += mass * (v1 - v0);
+          part.magnitude += std::abs(mass * (v1 - v0));
+        }
+      }
+    });
+  }
   for (const Part& p : parts) {
     work_.stress += p.work.stress, work_.gravity += p.work.gravity, work_.water += p.work.water;
     work_.damping += p.work.damping, work_.boundary += p.work.boundary;
@@ -73,8 +114,9 @@ void Audit<D>::rebase(const World<D>& world) {
 template <int D>
 Totals Audit<D>::totals(const World<D>& world) const {
   Totals t;
-  t.runout = t.height = -1e300;
+  t.runout = t.height = t.water_runout = t.water_height = -1e300;
   const bool unsaturated = world.pore_water && world.pore_water->unsaturated;
+  const bool layered = world.pore_water && world.pore_water->layer;
   const double per_density = 1 / world.scene.water.density;
   for (const auto& body : world.skeleton.bodies()) {
     const ParticleSet<D>& set = *body;
@@ -87,7 +129,7 @@ Totals Audit<D>::totals(const World<D>& world) const {
       t.solid_mass += set.mass[p];
       if (unsaturated && !set.pore_water.empty())
         t.water_volume += set.pore_water[p] * per_density * pores;
-      else if (!set.wet.empty())
+      else if (!set.wet.empty() && !layered)
         t.water_volume += set.wet[p] * pores;
       double square = 0;
       for (int d = 0; d < D; ++d) {
@@ -112,6 +154,7 @@ Totals Audit<D>::totals(const World<D>& world) const {
             set.volume[p] * (0.5 * ((1 + nu) * diagonal - nu * trace * trace) + (1 + nu) * shear) / young;
     }
   }
+  if (world.pore_water && world.pore_water->layer) add_layer(*world.pore_water->layer, t);
   t.largest_speed = std::sqrt(t.largest_speed);
   return t;
 }

@@ -12,20 +12,21 @@ namespace polder::coupling {
 struct Work {         // cumulative [J]
   double stress = 0;  // of the effective stress and the surface loads on the motion
   double gravity = 0;
-  double water = 0;  // of the pore pressure gradient
+  double water = 0;  // of the pore pressure gradient; in two layers also of drag and of the water's walls
   double damping = 0;
   double boundary = 0;  // of the boundaries' reactions
 };
 
 struct Totals {
   double solid_mass = 0;      // [kg]
-  double water_volume = 0;    // in the pores, of saturated soil where air is not modelled [m3]
+  double water_volume = 0;    // in the pores, of saturated soil where air is not modelled; of its points [m3]
   double kinetic_energy = 0;  // [J]
   double elastic_energy = 0;  // of the effective stress [J]
   std::array<double, 3> momentum{};
   double largest_speed = 0;
-  double runout = 0;  // largest x of any point's domain [m]
-  double height = 0;  // largest height of any point's domain [m]
+  double runout = 0;                          // largest x of any point's domain [m]
+  double height = 0;                          // largest height of any point's domain [m]
+  double water_runout = 0, water_height = 0;  // the same of the water's own points
 };
 
 template <int D>

@@ -6,6 +6,7 @@
 #include "coupling/body_shape.hpp"
 #include "coupling/initial_state.hpp"
 #include "coupling/random_field.hpp"
+#include "coupling/two_layer.hpp"
 #include "coupling/world.hpp"
 #include "mpm/seed_particles.hpp"
 
@@ -233,6 +234,16 @@ std::vector<fdm::Soil<D>> soils_of(const Scene& scene) {
   return soils;
 }
 
+template <int D>
+void add_water_layer(World<D>& world) {
+  PoreWater<D>& water = *world.pore_water;
+  const Scene& scene = world.scene;
+  water.layer = std::make_unique<WaterLayer<D>>(
+      world.skeleton.grid(), scene, water_walls<D>(scene, world.skeleton.boundaries()), water.cells);
+  seed_water(world);
+  world.skeleton.attach(water.layer->fluid.points());
+}
+
 }  // namespace
 
 template <int D>
@@ -258,7 +269,7 @@ std::unique_ptr<World<D>> build_world(const Scene& scene) {
   for (const Body& body : scene.bodies) add_body<D>(world->scene, body, *world);
   add_loads<D>(scene, world->skeleton);
   const Formulation* formulation = find_formulation(scene.formulation);
-  if (formulation != nullptr && formulation->carrier == WaterCarrier::cells) {
+  if (formulation != nullptr && formulation->carrier != WaterCarrier::none) {
     fdm::WaterProperties<D> water;
     water.density = scene.water.density;
     water.bulk_modulus = scene.water.bulk_modulus;
@@ -271,11 +282,13 @@ std::unique_ptr<World<D>> build_world(const Scene& scene) {
     }
     world->pore_water->pressure.set_tolerance(scene.numerics.solver_tolerance);
     world->pore_water->compressible = formulation->pressure == PressureMethod::compressible;
+    if (scene.layered()) add_water_layer(*world);
     set_saturation(*world);
   }
   if (!scene.unsaturated()) set_initial_stress(*world);  // else when the suction is known
   world->skeleton.set_laws(world->materials, true);
   world->skeleton.sort(true);
+  if (world->pore_water && world->pore_water->layer) world->pore_water->layer->fluid.follow_grid();
   return world;
 }
 

@@ -26,8 +26,9 @@ double water_table(const WaterSpec& water, const Vector3& x) {
 
 // Total vertical stress at x, compression positive, from the weight above. saturation: degree of it at a
 // place, where pores may hold air; else pores are full below the phreatic line.
-double overburden(const Scene& scene, const std::vector<BodyShape>& shapes, const Vector3& x, int up,
-                  bool wet, const std::function<double(const Vector3&)>& saturation) {
+double overburden(const Scene& scene, const std::vector<BodyShape>& shapes,
+                  const std::vector<BodyShape>& waters, const Vector3& x, int up, bool wet,
+                  const std::function<double(const Vector3&)>& saturation) {
   double g = 0;
   for (int d = 0; d < 3; ++d) g += scene.gravity[d] * scene.gravity[d];
   g = std::sqrt(g);
@@ -55,18 +56,29 @@ double overburden(const Scene& scene, const std::vector<BodyShape>& shapes, cons
       stress += density * g;
     }
   }
+  for (const BodyShape& water : waters)  // what stands free above; the soil's own water is counted already
+    for (auto [low, high] : water.vertical_intervals(x)) {
+      low = std::max(low, x[up]);
+      double depth = std::max(0.0, high - low);
+      for (const BodyShape& soil : shapes)
+        for (const auto& [bottom, top] : soil.vertical_intervals(x))
+          depth -= std::max(0.0, std::min(top, high) - std::max(bottom, low));
+      stress += std::max(0.0, depth) * scene.water.density * g;
+    }
   return stress;
 }
 
 // Top of the saturated soil above x: where a hydrostatic pore pressure is zero.
-double pressure_datum(const Scene& scene, const std::vector<BodyShape>& shapes, const Vector3& x, int up) {
+double pressure_datum(const Scene& scene, const std::vector<BodyShape>& shapes,
+                      const std::vector<BodyShape>& waters, const Vector3& x) {
   double top = -1e300;
   for (std::size_t b = 0; b < shapes.size(); ++b)
     if (scene.materials[scene.bodies[b].material].porosity > 0)
       for (const auto& [low, high] : shapes[b].vertical_intervals(x)) top = std::max(top, high);
   if (!scene.water.phreatic.empty()) top = std::min(top, water_table(scene.water, x));
+  for (const BodyShape& water : waters)
+    for (const auto& [low, high] : water.vertical_intervals(x)) top = std::max(top, high);
   if (scene.water.outside_level) top = std::max(top, scene.water.outside_level->at(0));
-  (void)up;
   return top;
 }
 
@@ -76,9 +88,9 @@ double k0_at(const InitialStress& s, double depth) {
   return s.k0[layer];
 }
 
-std::vector<BodyShape> shapes_of(const Scene& scene) {
+std::vector<BodyShape> shapes_of(const std::vector<Body>& bodies, const GridSpec& grid) {
   std::vector<BodyShape> shapes;
-  for (const Body& b : scene.bodies) shapes.emplace_back(b, scene.grid);
+  for (const Body& b : bodies) shapes.emplace_back(b, grid);
   return shapes;
 }
 
@@ -93,7 +105,9 @@ void set_saturation(World<D>& world) {
     if (m.porosity <= 0) continue;
     const int capillary = world.layouts[set.material].capillary_factor;
     const int n = set.slots();
-    set.pore_water.assign(n, water.density);
+    // In two layers the soil's own points hold only the water that stays above the phreatic line.
+    const bool layered = world.pore_water->layer != nullptr;
+    set.pore_water.assign(n, layered ? 0.0 : water.density);
     set.wet.assign(n, 1.0);
     if (set.conductivity.empty())
       set.conductivity.assign(n, m.hydraulic_conductivity);  // else a random field
@@ -108,7 +122,7 @@ void set_saturation(World<D>& world) {
     if (water.suction_above != 0) set.suction_stress.assign(n, 0.0);
     for (int p = 0; p < n; ++p) {
       if (set.position[D - 1][p] <= water_table(water, at(set, p))) continue;
-      set.wet[p] = 0;
+      if (!layered) set.wet[p] = 0;
       set.pore_water[p] = water.saturation_above * water.density;
       if (!set.suction_stress.empty()) set.suction_stress[p] = water.saturation_above * water.suction_above;
       if (capillary >= 0) set.state[capillary][p] = 1;
@@ -119,7 +133,8 @@ void set_saturation(World<D>& world) {
 template <int D>
 void set_initial_stress(World<D>& world) {
   const Scene& scene = world.scene;
-  const std::vector<BodyShape> shapes = shapes_of(scene);
+  const std::vector<BodyShape> shapes = shapes_of(scene.bodies, scene.grid);
+  const std::vector<BodyShape> waters = shapes_of(scene.water_bodies, scene.grid);
   const bool wet = world.pore_water != nullptr;
   const PoreWater<D>* unsaturated = wet && world.pore_water->unsaturated ? world.pore_water.get() : nullptr;
   std::function<double(const Vector3&)> saturation;
@@ -142,13 +157,14 @@ void set_initial_stress(World<D>& world) {
         for (int k = 0; k < ParticleSet<D>::kStress; ++k)
           set.stress[k][p] = initial.value[k] + initial.gradient[k] * (x[kUp] - initial.datum);
       } else if (initial.kind == InitialStress::Kind::k0) {
-        const bool full = wet && !set.wet.empty() && set.wet[p] > 0;
+        const bool full = wet && !set.wet.empty() && set.wet[p] > 0 &&
+                          (scene.water.phreatic.empty() || x[kUp] <= water_table(scene.water, x));
         double pressure = 0;
         if (unsaturated != nullptr)
           pressure = set.wet.empty() ? 0.0 : pushing_pressure_at(world, set, p);
         else if (full)
-          pressure = std::max(0.0, world.unit_weight() * (pressure_datum(scene, shapes, x, kUp) - x[kUp]));
-        double total = overburden(scene, shapes, x, kUp, wet, saturation);
+          pressure = std::max(0.0, world.unit_weight() * (pressure_datum(scene, shapes, waters, x) - x[kUp]));
+        double total = overburden(scene, shapes, waters, x, kUp, wet, saturation);
         if (full && scene.water.outside_level)  // open water standing on the surface
           total += world.unit_weight() * std::max(0.0, scene.water.outside_level->at(0) -
                                                            shapes[b].vertical_intervals(x).back().second);
@@ -180,12 +196,14 @@ void set_cell_pressure(const World<D>& world, Reals& p) {
       break;
     case WaterSpec::Initial::steady:  // begins from here where it is found step by step
     case WaterSpec::Initial::hydrostatic: {
-      const std::vector<BodyShape> shapes = shapes_of(scene);
+      const std::vector<BodyShape> shapes = shapes_of(scene.bodies, scene.grid);
+      const std::vector<BodyShape> waters = shapes_of(scene.water_bodies, scene.grid);
       for (const fdm::ActiveCell<D>& cell : water.cells.cells()) {
         Vector3 x{};
         const Point<D> c = water.cells.centre(cell.index);
         for (int d = 0; d < D; ++d) x[d] = c[d];
-        const double hydrostatic = world.unit_weight() * (pressure_datum(scene, shapes, x, D - 1) - x[D - 1]);
+        const double hydrostatic =
+            world.unit_weight() * (pressure_datum(scene, shapes, waters, x) - x[D - 1]);
         p[cell.slot] = suction ? hydrostatic : std::max(0.0, hydrostatic);
       }
       break;
@@ -193,13 +211,36 @@ void set_cell_pressure(const World<D>& world, Reals& p) {
   }
 }
 
+namespace {
+
+// Conductivity over unit weight where drag stands for it otherwise; free water conducts as well as makes no
+// difference.
+template <int D>
+Reals steady_mobility(const World<D>& world) {
+  constexpr double kFreeWater = 1e4;  // over the best soil
+  const PoreWater<D>& water = *world.pore_water;
+  const int slots = world.skeleton.grid().slots();
+  Reals mobility(slots, 0.0);
+  double best = 0;
+  for (int i = 0; i < slots; ++i) {
+    const double* s = &water.cell_sums[static_cast<std::size_t>(i) * 4];
+    if (s[0] > 0) mobility[i] = s[2] / s[0] / world.unit_weight();
+    best = std::max(best, mobility[i]);
+  }
+  for (double& m : mobility)
+    if (m == 0) m = kFreeWater * best;
+  return mobility;
+}
+
+}  // namespace
+
 template <int D>
 void set_initial_pressure(World<D>& world) {
   PoreWater<D>& water = *world.pore_water;
   if (water.unsaturated)
     set_unsaturated_state(world);
   else if (world.scene.water.initial == WaterSpec::Initial::steady)
-    water.pressure.steady(water.darcy_mobility);
+    water.pressure.steady(water.layer ? steady_mobility(world) : water.darcy_mobility);
   else
     set_cell_pressure(world, water.pressure.pressure());
 }
@@ -212,7 +253,7 @@ void wet_points(World<D>& world) {
     if (set.suction_stress.empty()) continue;
     const int capillary = world.layouts[set.material].capillary_factor;
     parallel_for(set.slots(), [&](int p) {
-      if (set.id[p] < 0 || set.wet[p] > 0 ||
+      if (set.id[p] < 0 || (set.wet[p] > 0 && !world.pore_water->layer) ||
           (set.suction_stress[p] == 0 && (capillary < 0 || set.state[capillary][p] == 0)))
         return;
       Index<D> cell;

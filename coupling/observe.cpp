@@ -27,6 +27,7 @@ template <int D>
 long Simulation::Run<D>::particles() const {
   long n = 0;
   for (const auto& body : world->skeleton.bodies()) n += body->count();
+  if (world->pore_water && world->pore_water->layer) n += world->pore_water->layer->fluid.points().count();
   return n;
 }
 
@@ -53,10 +54,12 @@ std::vector<Column> Simulation::Run<D>::history() const {
       skeleton.load_norm() > 0 ? skeleton.unbalanced_force() / skeleton.load_norm() : 0.0);
   for (int d = 0; d < D; ++d) add(std::string("momentum_") + kAxis[d] + "[kg m/s]", t.momentum[d]);
   add("momentum_error[-]", audit->impulse_error(t));
-  add("solid_mass_error[-]", (t.solid_mass - initial_solid_mass) / initial_solid_mass);
+  add("solid_mass_error[-]",
+      initial_solid_mass > 0 ? (t.solid_mass - initial_solid_mass) / initial_solid_mass : 0.0);
   add("max_speed[m/s]", t.largest_speed);
-  add("runout[m]", t.runout);
-  add("height[m]", t.height);
+  const bool soil = !scene.bodies.empty();
+  add("runout[m]", soil ? t.runout : 0.0);
+  add("height[m]", soil ? t.height : 0.0);
   for (std::size_t b = 0; b < skeleton.boundaries().specs().size(); ++b) {
     const auto& spec = skeleton.boundaries().specs()[b];
     if (spec.name.rfind("side-", 0) == 0) continue;  // unnamed sides
@@ -87,6 +90,11 @@ std::vector<Column> Simulation::Run<D>::history() const {
       add("discharge:" + line.name + "[m3/s]", n < flows.size() ? flows[n] : 0.0);
     }
     add("pressure_cells", static_cast<double>(water.cells.count()));
+    if (water.layer) {
+      add("water_points", water.layer->fluid.points().count());
+      add("water_runout[m]", t.water_runout);
+      add("water_height[m]", t.water_height);
+    }
     if (has_quasi_static_stage(scene)) {
       add("relaxations", static_cast<double>(relaxations));
       add("relaxation_steps", static_cast<double>(relaxation_steps));
@@ -304,6 +312,28 @@ PointFrame Simulation::Run<D>::points(const std::vector<std::string>& fields) co
   return f;
 }
 
+template <int D>
+PointFrame Simulation::Run<D>::water_points() const {
+  PointFrame f;
+  if (!world->pore_water || !world->pore_water->layer) return f;
+  f.fields = {{"velocity", 3, {}}, {"pore_pressure", 1, {}}, {"volume", 1, {}}, {"id", 1, {}}};
+  const ParticleSet<D>& set = world->pore_water->layer->fluid.points();
+  for (int id = 0; id < set.next_id(); ++id) {
+    const int p = set.find(id);
+    if (p < 0) continue;
+    Vector3 x{};
+    for (int d = 0; d < D; ++d) x[d] = set.position[d][p];
+    for (int d = 0; d < 3; ++d) {
+      f.positions.push_back(x[d]);
+      f.fields[0].values.push_back(d < D ? set.velocity[d < D ? d : 0][p] : 0.0);
+    }
+    f.fields[1].values.push_back(cell_quantity(x, "pore_pressure_interpolated"));
+    f.fields[2].values.push_back(set.volume[p]);
+    f.fields[3].values.push_back(id);
+  }
+  return f;
+}
+
 #define POLDER_INSTANTIATE(D)                                                                      \
   template long Simulation::Run<D>::particles() const;                                             \
   template std::vector<Column> Simulation::Run<D>::history() const;                                \
@@ -312,7 +342,8 @@ PointFrame Simulation::Run<D>::points(const std::vector<std::string>& fields) co
   template double Simulation::Run<D>::cell_quantity(const Vector3&, const std::string&) const;     \
   template double Simulation::Run<D>::body_quantity(const std::string&, const std::string&) const; \
   template Profile Simulation::Run<D>::profile(const Measure&) const;                              \
-  template PointFrame Simulation::Run<D>::points(const std::vector<std::string>&) const;
+  template PointFrame Simulation::Run<D>::points(const std::vector<std::string>&) const;           \
+  template PointFrame Simulation::Run<D>::water_points() const;
 POLDER_INSTANTIATE(2)
 POLDER_INSTANTIATE(3)
 

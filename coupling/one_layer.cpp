@@ -8,6 +8,7 @@
 #include "coupling/explicit_water.hpp"
 #include "coupling/initial_state.hpp"
 #include "coupling/stopwatch.hpp"
+#include "coupling/two_layer.hpp"
 #include "coupling/unsaturated.hpp"
 
 namespace polder::coupling {
@@ -137,10 +138,12 @@ void node_gradient(PoreWater<D>& w, const Reals& field, fdm::BoundaryValues valu
 
 template <int D>
 void carry_water(World<D>& world) {
-  if (world.pore_water->unsaturated)
+  PoreWater<D>& w = *world.pore_water;
+  if (w.unsaturated)
     carry_unsaturated(world);
   else
-    world.pore_water->pressure.carry();
+    w.pressure.carry();
+  if (w.layer && !w.layer->owed.empty()) world.skeleton.grid().carry(w.layer->owed);
 }
 
 template <int D>
@@ -166,13 +169,14 @@ void update_water_cells(World<D>& world, double end) {
       if (some && follows_porosity) w.darcy_mobility[i] *= kozeny_carman(w.porosity[i]);
     }
   });
+  if (w.layer) update_layer_cells(world);
   w.conditions = conditions_at(world, end);
   w.cells.update(w.fill, w.conditions);
   if (w.unsaturated)
     update_unsaturated_cells(world);
   else
     w.pressure.refresh();
-  seal_walls(world);
+  if (!w.layer) seal_walls(world);
 }
 
 template <int D>

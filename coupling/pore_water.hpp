@@ -1,5 +1,5 @@
-// Pore water in the grid's cells (formulations one-layer and higo): what a wet world owns besides its
-// skeleton.
+// Pore water: what a wet world owns besides its skeleton. In all formulations pressure lives in the grid's
+// cells; `layer` is there where the water has points of its own.
 //
 // A scene without retention curves is saturated wherever it is wet: `pressure` is solved for, `unsaturated`
 // is not there and no curve is ever evaluated. With retention curves `unsaturated` is solved for instead; all
@@ -9,8 +9,11 @@
 #include <memory>
 #include <vector>
 
+#include "coupling/scene.hpp"
 #include "fdm/pressure_field.hpp"
 #include "fdm/unsaturated_field.hpp"
+#include "fdm/volume_correction.hpp"
+#include "mpm/fluid_layer.hpp"
 
 namespace polder::coupling {
 
@@ -34,6 +37,32 @@ struct UnsaturatedWater {
   Reals change, room_share, even_share, suction, suction_stress;  // work space
 };
 
+// What water on points of its own needs (two_layer.hpp).
+template <int D>
+struct WaterLayer {
+  WaterLayer(const Grid<D>& grid, const Scene& scene, mpm::BoundarySet<D> boundaries,
+             const fdm::WaterCells<D>& cells)
+      : fluid(grid, scene.grid.space, scene.grid.shape,
+              scene.numerics.water_transfer == Transfer::apic ? mpm::AffineKind::apic : mpm::AffineKind::none,
+              scene.numerics.water_flip, std::move(boundaries)),
+        correction(cells) {}
+
+  mpm::FluidLayer<D> fluid;
+  fdm::VolumeCorrection<D> correction;
+  double spacing = 0;  // of new points [m]
+  // Cells (slots): volume of the water's points; share taken by soil, its pores included; resistance of the
+  // pores per volume of water [Pa s/m2]; volume that has come in through open sides and has no point yet
+  // [m3].
+  Reals sums, soil_fill, drag, owed;
+  // Nodes (slots * 4): velocities with drag exchanged and their responses to a unit pressure gradient.
+  Reals grains, water, grains_response, water_response;
+  Reals divergence, face_mobility;  // of cells and faces, see fdm/mixture_flow.hpp
+  Reals displacement;               // of the nodes, that takes the drift out of the volumes [m]
+  fdm::Discharge discharge;
+  bool held = false;              // by the soil, while it relaxes
+  double added = 0, removed = 0;  // volume of the points that came and went through open sides [m3]
+};
+
 template <int D>
 struct PoreWater {
   PoreWater(const Grid<D>& grid, Space space, const fdm::WaterProperties<D>& properties)
@@ -42,6 +71,7 @@ struct PoreWater {
   fdm::WaterCells<D> cells;
   fdm::PressureField<D> pressure;                    // of saturated scenes
   std::unique_ptr<UnsaturatedWater<D>> unsaturated;  // of the others
+  std::unique_ptr<WaterLayer<D>> layer;              // where water has points of its own
   fdm::WaterConditions<D> conditions;
   // Cells (slots): soil's share, its porosity, its saturated conductivity over unit weight. Nodes (slots * 4
   // or slots).
@@ -63,6 +93,7 @@ struct PoreWater {
   // The part of it that pushes the skeleton through its gradient; the rest, suction, acts as a stress.
   const Reals& pushing_pressure() const { return unsaturated ? unsaturated->pushing : pressure.pressure(); }
   const fdm::Discharge& discharge() {
+    if (layer) return layer->discharge;
     return unsaturated ? unsaturated->field.discharge() : pressure.discharge();
   }
   const char* solver_name() const {

@@ -81,7 +81,7 @@ std::vector<Quantity> history_quantities(const Scene& scene) {
     if (b.kind != Boundary::Kind::traction && b.kind != Boundary::Kind::pressure)
       for (int d = 0; d < dimension; ++d) list.push_back({"reaction:" + b.name + "_" + component(d), "N"});
   const Formulation* formulation = find_formulation(scene.formulation);
-  if (formulation != nullptr && formulation->carrier == WaterCarrier::cells) {
+  if (formulation != nullptr && formulation->carrier != WaterCarrier::none) {
     list.insert(list.end(), {{"water_mass_error", "-"},
                              {"water_outflow", "m3"},
                              {"max_pore_pressure", "Pa"},
@@ -91,6 +91,8 @@ std::vector<Quantity> history_quantities(const Scene& scene) {
     for (const WaterLine& w : scene.water_lines)
       if (w.kind != WaterLine::Kind::sheet) list.push_back({"discharge:" + w.name, "m3/s"});
     list.push_back({"pressure_cells", ""});
+    if (scene.layered())
+      list.insert(list.end(), {{"water_points", ""}, {"water_runout", "m"}, {"water_height", "m"}});
     if (has_quasi_static_stage(scene)) {
       for (const char* name : {"relaxations", "relaxation_steps", "unbalanced_relaxations"})
         list.push_back({name, ""});

@@ -35,7 +35,7 @@ constexpr int kFewestSteps = 300;  // before a motion counts as running away
 
 template <int D>
 Relaxation<D>::Relaxation(World<D>& world, const RelaxationOptions& options)
-    : world_(world), options_(options), audit_(world) {
+    : world_(world), held_(world), options_(options), audit_(world) {
   for (auto& body : world_.skeleton.bodies()) {
     ParticleSet<D>& set = *body;
     const int plastic = world_.layouts[set.material].plastic_strain;

@@ -25,7 +25,7 @@
 #include <vector>
 
 #include "coupling/audit.hpp"
-#include "coupling/world.hpp"
+#include "coupling/two_layer.hpp"
 
 namespace polder::coupling {
 
@@ -77,6 +77,7 @@ class Relaxation {
   void each_node(const F& f) const;
 
   World<D>& world_;
+  HeldWater<D> held_;
   RelaxationOptions options_;
   Audit<D> audit_;
   Reals mass_;                // M [slots]

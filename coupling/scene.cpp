@@ -31,7 +31,7 @@ const std::vector<Formulation>& formulations() {
       {"v-w", C::skeleton, I::kept, P::compressible, S::saturated, false,
        "Jassim et al. 2013; sequence of Verruijt 2010"},
       {"three-phase", C::skeleton, I::neglected, P::compressible, S::three_phase, false, "Yerro et al. 2015"},
-      {"two-layer", C::particles, I::kept, P::projected, S::saturated, false, "Bandara & Soga 2015"},
+      {"two-layer", C::particles, I::kept, P::projected, S::saturated, true, "Bandara & Soga 2015"},
       {"two-layer-darcy", C::particles, I::neglected, P::compressible, S::saturated, false,
        "Abe et al. 2013"},
       {"mixture", C::particles, I::kept, P::compressible, S::saturated, false,
@@ -50,6 +50,11 @@ bool Scene::unsaturated() const {
   const Formulation* f = find_formulation(formulation);
   if (f == nullptr || f->carrier != WaterCarrier::cells) return false;
   return std::any_of(materials.begin(), materials.end(), [](const Material& m) { return m.retains(); });
+}
+
+bool Scene::layered() const {
+  const Formulation* f = find_formulation(formulation);
+  return f != nullptr && f->carrier == WaterCarrier::particles;
 }
 
 bool Scene::kozeny_carman() const {

@@ -76,6 +76,9 @@ struct NumericsSpec {
   StressOrder order = StressOrder::musl;
   Transfer transfer = Transfer::flip;
   double flip = 0.99;  // share of FLIP in the blend [-]
+  // Points of water: affine velocities (apic), or a blend with this share of FLIP.
+  Transfer water_transfer = Transfer::apic;
+  double water_flip = 0.99;
   LockingCure locking = LockingCure::automatic;
   double courant = 0.5;             // step as a share of the limit of the skeleton wave [-]
   std::optional<double> time_step;  // fixed step [s]; warned about or refused beyond the limit
@@ -336,6 +339,9 @@ struct Scene {
   WaterSpec water;
   std::vector<Material> materials;
   std::vector<Body> bodies;
+  // Where water stands by itself, in formulations in which it has points of its own: shape, points and motion
+  // of a body; soil keeps its place where the two overlap.
+  std::vector<Body> water_bodies;
   std::vector<Boundary> boundaries;
   std::vector<WaterBoundary> water_boundaries;
   std::vector<WaterLine> water_lines;
@@ -347,6 +353,7 @@ struct Scene {
   int dimension() const { return grid.space == Space::three_d ? 3 : 2; }
   // Some material has a retention curve: water in cells is computed as unsaturated flow.
   bool unsaturated() const;
+  bool layered() const;        // water has points of its own
   bool kozeny_carman() const;  // conductivities follow the porosity, those of all porous materials or of none
   std::vector<mpm::MaterialParameters> skeleton_materials() const;
   bool operator==(const Scene&) const = default;

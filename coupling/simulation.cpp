@@ -14,12 +14,16 @@
 #include "coupling/step_limit.hpp"
 #include "coupling/stopwatch.hpp"
 #include "coupling/strength_reduction.hpp"
+#include "coupling/two_layer.hpp"
 
 namespace polder::coupling {
 namespace {
 
-constexpr int kRestInterval = 20;    // steps between two looks at the equilibrium ratios
-constexpr int kWaveInterval = 64;    // steps between two looks at the wave speed
+constexpr int kRestInterval = 20;  // steps between two looks at the equilibrium ratios
+constexpr int kWaveInterval = 64;  // steps between two looks at the wave speed
+// In two layers longer steps stay stable, but from 0.7 on suction grows behind a slide under MUSL
+// (docs/theory/two-layer.md).
+constexpr double kLayeredCourant = 0.5;
 constexpr double kSpeedShare = 0.2;  // of a cell that a particle may cross in one step
 
 const char* mode_name(Stage::Mode mode) {
@@ -71,22 +75,31 @@ Simulation::Run<D>::Run(const Scene& s) : world(build_world<D>(s)) {
 template <int D>
 double Simulation::Run<D>::courant_share(int of_stage) const {
   const bool damped = scene.stages.at(of_stage).damping > 0;
-  return damped ? std::min(scene.numerics.courant, 1.0) : scene.numerics.courant;
+  const double most = scene.layered() ? kLayeredCourant : damped ? 1.0 : scene.numerics.courant;
+  return std::min(scene.numerics.courant, most);
+}
+
+// Fastest wave that an explicit part of the step must follow, without those of the water's pressure.
+template <int D>
+double Simulation::Run<D>::fastest_wave() const {
+  const double skeleton = world->skeleton.wave_speed(world->materials);
+  const bool layered = world->pore_water && world->pore_water->layer;
+  return layered ? std::max(skeleton, surface_wave_speed(*world)) : skeleton;
 }
 
 template <int D>
-std::pair<double, const char*> Simulation::Run<D>::chosen_step(int of_stage, double skeleton_speed) const {
+std::pair<double, const char*> Simulation::Run<D>::chosen_step(int of_stage, double wave) const {
   const double h = world->skeleton.grid().spacing(), share = courant_share(of_stage);
   const Stage& spec = scene.stages[of_stage];
   if (!world->pore_water || !world->pore_water->compressible || !spec.water_flows || spec.relaxes())
-    return {share * h / skeleton_speed, "skeleton wave"};
-  const MotionLimit limit = combined_limit(explicit_limit(*world, time), h, skeleton_speed);
+    return {share * h / wave, scene.bodies.empty() ? "surface wave" : "skeleton wave"};
+  const MotionLimit limit = combined_limit(explicit_limit(*world, time), h, wave);
   return {share * limit.dt, limit.reason};
 }
 
 template <int D>
 double Simulation::Run<D>::automatic_step(int of_stage) const {
-  return chosen_step(of_stage, world->skeleton.wave_speed(world->materials)).first;
+  return chosen_step(of_stage, fastest_wave()).first;
 }
 
 template <int D>
@@ -129,7 +142,7 @@ void Simulation::Run<D>::step_motion() {
   const Stage& stage_spec = present();
   mpm::Skeleton<D>& skeleton = world->skeleton;
   const double h = skeleton.grid().spacing();
-  if (steps % kWaveInterval == 0) wave_speed = skeleton.wave_speed(world->materials);
+  if (steps % kWaveInterval == 0) wave_speed = fastest_wave();
 
   // Time step: a share of the limit of the waves; never more than a share of a cell for the fastest point.
   const auto chosen = chosen_step(stage, wave_speed);
@@ -153,8 +166,9 @@ void Simulation::Run<D>::step_motion() {
     blend_for_step(*world, dt, courant_share(stage) * h / wave_speed);
   {
     Stopwatch mechanics(timing.mechanics);
-    const mpm::MoveResult moved =
-        world->pore_water ? step_one_layer(*world, in, steps) : step_dry(*world, in);
+    const mpm::MoveResult moved = !world->pore_water         ? step_dry(*world, in)
+                                  : world->pore_water->layer ? step_two_layer(*world, in, steps)
+                                                             : step_one_layer(*world, in, steps);
     speed = moved.largest_speed;
   }
   {
@@ -230,6 +244,21 @@ void Simulation::Run<D>::end_stage(const std::string& by) {
 }
 
 template <int D>
+void Simulation::Run<D>::visit_points(StateVisitor& v, const std::string& prefix, ParticleSet<D>& set) {
+  std::int64_t points = set.next_id();
+  v.count(prefix + "points", points);
+  v.integers(prefix + "id", set.id);
+  std::vector<int> ranges;
+  for (const auto& r : set.ranges) ranges.push_back(r.first), ranges.push_back(r.count);
+  v.integers(prefix + "ranges", ranges);
+  for (ParticleField& f : set.fields()) v.reals(prefix + f.name, *f.values);
+  if (!v.reading()) return;
+  set.ranges.assign(ranges.size() / 2, {});
+  for (std::size_t r = 0; r < set.ranges.size(); ++r) set.ranges[r] = {ranges[2 * r], ranges[2 * r + 1]};
+  set.restore(static_cast<int>(points));
+}
+
+template <int D>
 void Simulation::Run<D>::visit(StateVisitor& v) {
   const auto integer = [&](const char* name, auto& value) {
     std::int64_t n = value;
@@ -261,21 +290,8 @@ void Simulation::Run<D>::visit(StateVisitor& v) {
     blocks.push_back(skeleton.grid().block_number(skeleton.grid().block_origin(b)));
   v.number("travelled", travelled), v.number("mass_floor", floor), v.integers("blocks", blocks);
   if (v.reading()) skeleton.restore(travelled, floor, blocks);
-  for (std::size_t b = 0; b < skeleton.bodies().size(); ++b) {
-    ParticleSet<D>& set = *skeleton.bodies()[b];
-    const std::string n = "body_" + std::to_string(b) + "/";
-    std::int64_t points = set.count();
-    v.count(n + "points", points);
-    v.integers(n + "id", set.id);
-    std::vector<int> ranges;
-    for (const auto& r : set.ranges) ranges.push_back(r.first), ranges.push_back(r.count);
-    v.integers(n + "ranges", ranges);
-    for (ParticleField& f : set.fields()) v.reals(n + f.name, *f.values);
-    if (!v.reading()) continue;
-    set.ranges.assign(ranges.size() / 2, {});
-    for (std::size_t r = 0; r < set.ranges.size(); ++r) set.ranges[r] = {ranges[2 * r], ranges[2 * r + 1]};
-    set.restore(static_cast<int>(points));
-  }
+  for (std::size_t b = 0; b < skeleton.bodies().size(); ++b)
+    visit_points(v, "body_" + std::to_string(b) + "/", *skeleton.bodies()[b]);
   for (std::size_t l = 0; l < skeleton.loads().size(); ++l) {
     std::vector<Point<D>>& vertices = skeleton.loads()[l].vertices();
     Reals coordinates;
@@ -295,6 +311,13 @@ void Simulation::Run<D>::visit(StateVisitor& v) {
 template <int D>
 void Simulation::Run<D>::visit_water(StateVisitor& v) {
   PoreWater<D>& water = *world->pore_water;
+  if (water.layer) {
+    WaterLayer<D>& layer = *water.layer;
+    visit_points(v, "water/", layer.fluid.points());
+    v.reals("water_owed", layer.owed);
+    v.number("water_added", layer.added), v.number("water_removed", layer.removed);
+    if (v.reading()) layer.fluid.follow_grid();
+  }
   UnsaturatedWater<D>* unsaturated = water.unsaturated.get();
   Reals pressure = water.pore_pressure(), saturation, points, active, travel;
   std::vector<int> cells =
@@ -393,6 +416,14 @@ double Simulation::automatic_step(int stage) const {
 }
 StepLimit Simulation::step_limit() const {
   if (!run_->limit) {
+    const Scene& scene = run_->scene;
+    if (scene.layered()) {
+      run_->limit = StepLimit{
+          run_->automatic_step(0) / std::min(scene.numerics.courant, kLayeredCourant) * kLayeredCourant,
+          "two layers, " + fdm::number(kLayeredCourant) + " of cell over " +
+              (scene.bodies.empty() ? "the speed of long waves" : "the skeleton's wave speed")};
+      return *run_->limit;
+    }
     const StabilityLimit found = find_stability_limit(run_->scene);
     char text[160];
     std::snprintf(text, sizeof text, "%s in %s'%s', %.3g of cell over skeleton wave speed",
@@ -458,6 +489,9 @@ std::vector<std::pair<double, double>> Simulation::phreatic_line() const {
 PointFrame Simulation::points(const std::vector<std::string>& fields) const {
   return run_->points(fields);
 }
+PointFrame Simulation::water_points() const {
+  return run_->water_points();
+}
 FlowNet Simulation::flow_net() const {
   return run_->flow_net();
 }
@@ -496,7 +530,8 @@ std::vector<std::string> Simulation::skipped() const {
           "linear systems: pressure is explicit where soil moves; solver_tolerance counts in stages of "
           "seepage "
           "and quasi-static ones only");
-    if (!scene.water.outside_level) s.push_back("open water on the surface: the scene has none");
+    if (!scene.water.outside_level && !scene.layered())
+      s.push_back("open water on the surface: the scene has none");
   }
   s.push_back("discrete elements: the scene has none, so LIGGGHTS and MPI are not loaded");
   s.push_back("blocks without particles: neither stored nor visited");

@@ -180,6 +180,8 @@ class Simulation {
   FlowNet flow_net() const;  // empty in 3D and without pore water
 
   PointFrame points(const std::vector<std::string>& fields) const;
+  // Points of water with velocity, pore_pressure, volume and id; empty where it has none of its own.
+  PointFrame water_points() const;
   CellFrame water_cells() const;
   Timing timing() const;
 

@@ -27,6 +27,7 @@ struct Simulation::Base {
   virtual std::vector<std::pair<double, double>> phreatic_line() const = 0;
   virtual FlowNet flow_net() const = 0;
   virtual PointFrame points(const std::vector<std::string>& fields) const = 0;
+  virtual PointFrame water_points() const = 0;
   virtual CellFrame water_cells() const = 0;
   virtual void visit(StateVisitor& visitor) = 0;
   virtual StabilityTrial try_reduced_strength(double factor, const StabilityOptions& options) = 0;
@@ -73,8 +74,9 @@ struct Simulation::Run final : Simulation::Base {
   void step() override;
   double courant_share(int of_stage) const;
   // Share of the limits that the step is chosen from, and what sets it (explicit_water.hpp).
-  std::pair<double, const char*> chosen_step(int of_stage, double skeleton_speed) const;
+  std::pair<double, const char*> chosen_step(int of_stage, double wave) const;
   double automatic_step(int of_stage) const override;
+  double fastest_wave() const;
   std::vector<Column> history() const override;
   long particles() const override;
   long cells() const override { return world->skeleton.grid().slots(); }
@@ -90,6 +92,7 @@ struct Simulation::Run final : Simulation::Base {
   std::vector<std::pair<double, double>> phreatic_line() const override;
   FlowNet flow_net() const override;
   PointFrame points(const std::vector<std::string>& fields) const override;
+  PointFrame water_points() const override;
   CellFrame water_cells() const override;
   void visit(StateVisitor& visitor) override;
   StabilityTrial try_reduced_strength(double factor, const StabilityOptions& options) override;
@@ -98,6 +101,7 @@ struct Simulation::Run final : Simulation::Base {
   void begin_stage();
   void step_motion();
   void visit_water(StateVisitor& visitor);
+  void visit_points(StateVisitor& visitor, const std::string& prefix, ParticleSet<D>& set);
   void visit_water_stage(StateVisitor& visitor);
   // Stages in which the water sets the pace (seepage_stage.cpp).
   struct Displaced {

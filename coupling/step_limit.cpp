@@ -8,7 +8,7 @@
 #include "coupling/body_shape.hpp"
 #include "coupling/explicit_water.hpp"
 #include "coupling/initial_state.hpp"
-#include "coupling/one_layer.hpp"
+#include "coupling/two_layer.hpp"
 #include "coupling/world.hpp"
 
 namespace polder::coupling {
@@ -49,6 +49,7 @@ Scene patch_of(const Scene& scene, const Body& body, bool wet) {
     (*b.box)[1][d] = s.grid.origin[d] + reach[d] * h;
   }
   s.bodies = {b};
+  s.water_bodies.clear();
   // No weight; the mobility of the water is that of the scene's gravity all the same.
   double gravity = 0;
   for (double g : scene.gravity) gravity += g * g;
@@ -102,10 +103,12 @@ class Patch {
     if (w.pore_water && w.pore_water->compressible)
       blend_for_step(*world_, dt, w.scene.numerics.courant * w.skeleton.grid().spacing() / wave_speed_);
     for (int i = 0; i < kSteps; ++i) {
-      if (world_->pore_water)
-        step_one_layer(*world_, in, 1);
-      else
+      if (!world_->pore_water)
         step_dry(*world_, in);
+      else if (world_->pore_water->layer)
+        step_two_layer(*world_, in, 1);
+      else
+        step_one_layer(*world_, in, 1);
       const Totals t = audit_->totals(*world_);
       const double energy = t.kinetic_energy + t.elastic_energy;
       if (!(energy < kRunaway * initial_)) return false;
@@ -121,8 +124,12 @@ class Patch {
   // Random velocities, the same in every trial; no stress, no pressure.
   void disturb() {
     std::uint64_t state = 1;
-    for (auto& body : world_->skeleton.bodies()) {
-      ParticleSet<D>& set = *body;
+    std::vector<ParticleSet<D>*> sets;
+    for (auto& body : world_->skeleton.bodies()) sets.push_back(body.get());
+    if (world_->pore_water && world_->pore_water->layer)
+      sets.push_back(&world_->pore_water->layer->fluid.points());
+    for (ParticleSet<D>* points : sets) {
+      ParticleSet<D>& set = *points;
       for (int p = 0; p < set.slots(); ++p) {
         for (Reals& s : set.stress) s[p] = 0;
         if (set.id[p] < 0) continue;

@@ -18,6 +18,7 @@ inline constexpr double kUnitWeight = 9810;  // of water [N/m3]
 
 // What all scenes choose from.
 struct Choice {
+  std::string formulation = "one-layer";
   double cell = 0.1;
   ShapeKind shape = ShapeKind::gimp;
   bool musl = true;
@@ -34,7 +35,7 @@ struct Choice {
 mpm::MaterialParameters elastic_soil(double young, double poisson, double porosity, double conductivity,
                                      double density_solid = 2650);
 
-// An empty one-layer scene on cells x cells with one dynamic stage.
+// An empty scene on cells x cells with one dynamic stage.
 Scene wet_scene(const Choice& choice, double width, double height, double duration);
 
 // Sum over a history of a named column, NaN if there is none.

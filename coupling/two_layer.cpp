@@ -1,0 +1,380 @@
+#include "coupling/two_layer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/threads.hpp"
+#include "coupling/initial_state.hpp"
+#include "coupling/stopwatch.hpp"
+#include "fdm/mixture_flow.hpp"
+
+namespace polder::coupling {
+namespace {
+
+constexpr int kStride = 4;
+constexpr double kNoWater = 1e-26;  // mass of a node, as a share of a cell of water, that feels no force
+constexpr double kLeastPorosity = 0.05;
+constexpr int kDriftInterval = 8;    // steps between two corrections of the water's volume
+constexpr double kDriftShare = 0.3;  // of the drift that one of them takes back
+constexpr int kWettingInterval = 8;  // steps between two looks for soil that water has reached
+
+template <int D>
+double water_floor(const World<D>& world) {
+  return kNoWater * world.scene.water.density * std::pow(world.scene.grid.cell, D);
+}
+
+// w_trial = w_old + dt (g - grad p / rho_w) of nodes with water, under the walls.
+template <int D>
+void predict_water(World<D>& world, double end, double dt, const Point<D>& gravity) {
+  PoreWater<D>& w = *world.pore_water;
+  mpm::FluidLayer<D>& fluid = w.layer->fluid;
+  const double per_density = 1 / world.scene.water.density, floor = water_floor(world);
+  parallel_for(world.skeleton.grid().slots(), [&](int i) {
+    const bool some = fluid.sums()[static_cast<std::size_t>(i) * 8] > floor;
+    for (int d = 0; d < D; ++d) {
+      const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
+      fluid.velocity()[j] =
+          fluid.velocity_old()[j] + (some ? dt * (gravity[d] - w.node_gradient[j] * per_density) : 0.0);
+    }
+  });
+  fluid.constrain(end, dt, fluid.velocity());
+}
+
+// Exchanges drag between the trial velocities of grains and water, implicitly at each node, and finds what a
+// unit pressure gradient over the step does to both. With b = dt B / M_w, B the drag of the node's water,
+//   M_s (v - v~) = - M_w (w - w~) = dt B (w - v).
+// Where a boundary holds the grains they do not give way to the water; the reaction goes into their trial
+// velocity all the same, from where the boundary takes it, and friction feels it.
+template <int D>
+void exchange_drag(World<D>& world, double end, double dt) {
+  WaterLayer<D>& layer = *world.pore_water->layer;
+  mpm::Skeleton<D>& skeleton = world.skeleton;
+  const std::vector<std::uint8_t>& held = skeleton.boundaries().held_components();
+  const std::vector<std::uint8_t>& walled = layer.fluid.held_components();
+  const double per_density = 1 / world.scene.water.density, floor = water_floor(world);
+  Reals& trial = skeleton.v_trial();
+  Reals& held_velocity = layer.grains;
+  held_velocity = trial;
+  skeleton.boundaries().apply(end, dt, skeleton.sums(), held_velocity, false, false);
+  for (Reals* r : {&layer.water, &layer.grains_response, &layer.water_response}) r->resize(trial.size());
+  parallel_for(skeleton.grid().slots(), [&](int i) {
+    const double* s = &skeleton.sums()[static_cast<std::size_t>(i) * 8];
+    const double* f = &layer.fluid.sums()[static_cast<std::size_t>(i) * 8];
+    const double soil = s[0], water = f[0];
+    const bool has_soil = soil > skeleton.mass_floor(), has_water = water > floor;
+    const double push_soil = has_soil ? dt * s[mpm::Transfer<D>::kVolume] / soil : 0.0;
+    const double push_water = has_water ? dt * per_density : 0.0;
+    const double b = has_soil && has_water ? dt * f[mpm::FluidLayer<D>::kDrag] / water : 0.0;
+    const double whole = soil + b * (soil + water);
+    for (int d = 0; d < D; ++d) {
+      const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
+      const bool fixed = held[i] >> d & 1, wall = walled[i] >> d & 1;
+      const double v = trial[j], w = layer.fluid.velocity()[j];
+      double &rs = layer.grains_response[j], &rw = layer.water_response[j];
+      layer.water[j] = w;
+      rs = fixed ? 0.0 : push_soil;
+      rw = wall ? 0.0 : push_water;
+      if (!has_soil || !has_water) {
+        if (!has_soil) rs = rw;
+        if (!has_water) rw = rs;
+      } else if (wall) {
+        if (!fixed) trial[j] = (v + b * water / soil * w) / (1 + b * water / soil);
+      } else if (fixed) {
+        layer.water[j] = (w + b * held_velocity[j]) / (1 + b);
+        trial[j] += water / soil * (w - layer.water[j]);
+        rw = push_water / (1 + b);
+      } else {
+        trial[j] = ((1 + b) * soil * v + b * water * w) / whole;
+        layer.water[j] = ((soil + b * water) * w + b * soil * v) / whole;
+        rs = ((1 + b) * soil * push_soil + b * water * push_water) / whole;
+        rw = ((soil + b * water) * push_water + b * soil * push_soil) / whole;
+      }
+    }
+  });
+}
+
+// The mixture's velocities: a node without one of the two layers gives the other's velocity to it.
+template <int D>
+void complete_velocities(World<D>& world, const Reals& grains) {
+  WaterLayer<D>& layer = *world.pore_water->layer;
+  const mpm::Skeleton<D>& skeleton = world.skeleton;
+  const double floor = water_floor(world);
+  layer.grains.resize(grains.size());
+  parallel_for(skeleton.grid().slots(), [&](int i) {
+    const bool has_soil = skeleton.sums()[static_cast<std::size_t>(i) * 8] > skeleton.mass_floor();
+    const bool has_water = layer.fluid.sums()[static_cast<std::size_t>(i) * 8] > floor;
+    for (int d = 0; d < D; ++d) {
+      const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
+      layer.grains[j] = has_soil ? grains[j] : layer.water[j];
+      if (!has_water) layer.water[j] = layer.grains[j];
+    }
+  });
+}
+
+template <int D>
+fdm::MixtureMotion motion_of(const PoreWater<D>& w, const Reals& grains, const Reals& water) {
+  const WaterLayer<D>& layer = *w.layer;
+  return {grains, water, layer.grains_response, layer.water_response, w.porosity};
+}
+
+template <int D>
+void solve_pressure(World<D>& world, double dt) {
+  PoreWater<D>& w = *world.pore_water;
+  WaterLayer<D>& layer = *w.layer;
+  const fdm::MixtureMotion motion = motion_of(w, layer.grains, layer.water);
+  fdm::mixture_divergence(w.cells, motion, layer.divergence);
+  fdm::mixture_mobility(w.cells, motion, layer.face_mobility);
+  fdm::PressureStep p;
+  p.dt = dt;
+  p.divergence = layer.divergence;
+  p.face_mobility = layer.face_mobility;
+  p.porosity = w.porosity;
+  p.darcy_mobility = w.darcy_mobility;
+  p.rhie_chow = world.scene.numerics.rhie_chow;
+  p.pressure_gradient = w.node_gradient;
+  w.pressure.solve(p);
+  w.storage += dt * w.pressure.balance().storage;
+}
+
+// Corrections of both velocities by grad dp.
+template <int D>
+void correct(World<D>& world, double end, double dt) {
+  PoreWater<D>& w = *world.pore_water;
+  WaterLayer<D>& layer = *w.layer;
+  const mpm::Skeleton<D>& skeleton = world.skeleton;
+  w.correction.resize(layer.grains.size());
+  parallel_for(skeleton.grid().slots(), [&](int i) {
+    const bool has_soil = skeleton.sums()[static_cast<std::size_t>(i) * 8] > skeleton.mass_floor();
+    for (int d = 0; d < kStride; ++d) {
+      const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
+      w.correction[j] = d < D && has_soil ? -layer.grains_response[j] * w.node_gradient[j] : 0.0;
+      if (d < D) layer.fluid.velocity()[j] = layer.water[j] - layer.water_response[j] * w.node_gradient[j];
+    }
+  });
+  layer.fluid.constrain(end, dt, layer.fluid.velocity());
+  world.skeleton.correct(end, dt, w.correction);
+}
+
+template <int D>
+void measure_discharge(World<D>& world) {
+  PoreWater<D>& w = *world.pore_water;
+  WaterLayer<D>& layer = *w.layer;
+  const fdm::MixtureMotion motion = motion_of(w, world.skeleton.v_new(), layer.fluid.velocity());
+  layer.discharge.boundary.assign(world.scene.water_boundaries.size(), 0.0);
+  for (const fdm::BoundaryFace<D>& f : w.cells.boundary_faces())
+    if (f.boundary >= 0 && !f.free_surface && f.open)
+      layer.discharge.boundary[f.boundary] += fdm::mixture_outflow(w.cells, motion, f);
+}
+
+// Moves the water's points so that grains and water together fill the cells.
+template <int D>
+void take_back_drift(World<D>& world) {
+  PoreWater<D>& w = *world.pore_water;
+  WaterLayer<D>& layer = *w.layer;
+  const Grid<D>& grid = world.skeleton.grid();
+  Reals& excess = layer.divergence;  // work space
+  excess.assign(grid.slots(), 0.0);
+  for (const fdm::ActiveCell<D>& cell : w.cells.cells()) {
+    const double grains = w.cell_sums[static_cast<std::size_t>(cell.slot) * 4 + 1];
+    const double water = layer.sums[static_cast<std::size_t>(cell.slot) * 4];
+    excess[cell.slot] = (grains + water) / cell.volume - 1;
+  }
+  layer.correction.solve(excess, w.porosity, kDriftShare, layer.displacement);
+  ParticleSet<D>& set = layer.fluid.points();
+  const double h = grid.spacing();
+  std::vector<double> far(set.ranges.size(), 0.0);
+  parallel_for(static_cast<int>(set.ranges.size()), [&](int block) {
+    const auto range = set.ranges[block];
+    for (int p = range.first; p < range.first + range.count; ++p) {
+      if (set.id[p] < 0) continue;
+      Index<D> base;
+      double share[D];
+      for (int d = 0; d < D; ++d) {
+        const double x = (set.position[d][p] - grid.origin()[d]) / h;
+        base[d] = std::clamp(static_cast<int>(std::floor(x)), 0, grid.cells()[d] - 1);
+        share[d] = x - base[d];
+      }
+      Point<D> u{};
+      for (int k = 0; k < ipow(2, D); ++k) {
+        Index<D> node = base;
+        double weight = 1;
+        for (int d = 0; d < D; ++d) {
+          const int one = k >> d & 1;
+          node[d] += one;
+          weight *= one ? share[d] : 1 - share[d];
+        }
+        const int slot = grid.slot(node);
+        if (slot < 0) continue;
+        for (int d = 0; d < D; ++d)
+          u[d] += weight * layer.displacement[static_cast<std::size_t>(slot) * kStride + d];
+      }
+      for (int d = 0; d < D; ++d) {
+        const double move = std::clamp(u[d], -0.1 * h, 0.1 * h);
+        set.position[d][p] += move;
+        far[block] = std::max(far[block], std::abs(move) / h);
+      }
+    }
+  });
+  world.skeleton.add_travel(far.empty() ? 0.0 : *std::max_element(far.begin(), far.end()));
+}
+
+}  // namespace
+
+template <int D>
+void update_layer_cells(World<D>& world) {
+  PoreWater<D>& w = *world.pore_water;
+  WaterLayer<D>& layer = *w.layer;
+  const Grid<D>& grid = world.skeleton.grid();
+  layer.fluid.scatter_cells(layer.sums);
+  layer.drag.resize(grid.slots());
+  layer.soil_fill.resize(grid.slots());
+  const double cell_volume = std::pow(grid.spacing(), D), unit_weight = world.unit_weight();
+  const bool radial = world.scene.grid.space == Space::axisymmetric;
+  const bool follows_porosity = world.scene.kozeny_carman();
+  parallel_for(grid.slots(), [&](int i) {
+    const double* s = &w.cell_sums[static_cast<std::size_t>(i) * 4];
+    const double water = layer.sums[static_cast<std::size_t>(i) * 4];
+    double volume = cell_volume;
+    if (radial) volume *= grid.origin()[0] + (grid.index(i)[0] + 0.5) * grid.spacing();
+    const bool some = s[0] > 1e-9 * volume;
+    const double soil_fill = s[0] / volume;
+    const double pores = some ? std::clamp(1 - s[1] / s[0], kLeastPorosity, 1.0) : 1.0;  // of the soil alone
+    w.darcy_mobility[i] = 0;
+    // Water fills the pores first, then the space beside and above the soil.
+    const double room = pores * soil_fill * volume;
+    w.fill[i] = water <= room ? water / (pores * volume) : std::min(soil_fill, 1.0) + (water - room) / volume;
+    // Of the mixture: of soil where it ends with the water, of both where water stands above it.
+    const double mixture = volume * std::clamp(std::max(soil_fill, w.fill[i]), 1e-9, 1.0);
+    w.porosity[i] = std::clamp(1 - s[1] / mixture, kLeastPorosity, 1.0);
+    layer.soil_fill[i] = std::min(soil_fill, 1.0);
+    double conductivity = some ? s[2] / s[0] : 0.0;
+    if (some && follows_porosity) conductivity *= kozeny_carman(pores);
+    // What makes the head lost across a layer of soil in the cell right: its share of the mixture, and water
+    // that is slower by the ratio of the porosities than in the layer.
+    const double layer_share = std::min(1.0, soil_fill * volume / mixture) * w.porosity[i] / pores;
+    layer.drag[i] = conductivity > 0 ? layer_share * pores * unit_weight / conductivity : 0.0;
+  });
+  const auto cell_of = [&](const ParticleSet<D>& set, int p) {
+    Index<D> cell;
+    for (int d = 0; d < D; ++d)
+      cell[d] = std::clamp(static_cast<int>((set.position[d][p] - grid.origin()[d]) / grid.spacing()), 0,
+                           grid.cells()[d] - 1);
+    return grid.slot(cell);
+  };
+  ParticleSet<D>& water = layer.fluid.points();
+  parallel_for(water.slots(), [&](int p) {
+    if (water.id[p] >= 0) water.nodal_weight[p] = layer.drag[cell_of(water, p)];
+  });
+  // Pressure pushes the grains of the soil that lies in water; all of that soil where it holds its water.
+  for (auto& body : world.skeleton.bodies()) {
+    ParticleSet<D>& soil = *body;
+    if (soil.wet.empty()) continue;
+    soil.nodal_weight.resize(soil.slots(), 0.0);
+    parallel_for(soil.slots(), [&](int p) {
+      if (soil.id[p] < 0) return;
+      const int slot = cell_of(soil, p);
+      const double submerged =
+          layer.soil_fill[slot] > 0 ? std::min(1.0, w.fill[slot] / layer.soil_fill[slot]) : 0.0;
+      const double grains = soil.mass[p] / soil.density_solid / soil.volume[p];
+      soil.nodal_weight[p] = submerged * (layer.held ? 1.0 : grains);
+    });
+  }
+}
+
+template <int D>
+double surface_wave_speed(const World<D>& world) {
+  const ParticleSet<D>& set = world.pore_water->layer->fluid.points();
+  double low = std::numeric_limits<double>::infinity(), high = -low, gravity = 0;
+  for (int p = 0; p < set.slots(); ++p)
+    if (set.id[p] >= 0)
+      low = std::min(low, set.position[D - 1][p]), high = std::max(high, set.position[D - 1][p]);
+  for (double g : world.gravity) gravity += g * g;
+  return high > low ? std::sqrt(std::sqrt(gravity) * (high - low)) : 0.0;
+}
+
+template <int D>
+mpm::MoveResult step_two_layer(World<D>& world, const StepInput& in, long step) {
+  PoreWater<D>& w = *world.pore_water;
+  WaterLayer<D>& layer = *w.layer;
+  mpm::Skeleton<D>& skeleton = world.skeleton;
+  const double end = in.time + in.dt;
+  Point<D> gravity = world.gravity;
+  for (double& g : gravity) g *= in.gravity;
+
+  if (skeleton.sort()) carry_water(world);
+  layer.fluid.follow_grid();
+  update_water_cells(world, end);
+  skeleton.scatter(end);
+  layer.fluid.scatter();
+
+  push_by_pressure(world);  // leaves grad p^n at the nodes
+  skeleton.predict(in.dt, gravity, in.damping, &w.acceleration);
+  predict_water<D>(world, end, in.dt, gravity);
+  exchange_drag(world, end, in.dt);
+  skeleton.constrain(end, in.dt);
+  {
+    Stopwatch watch(w.wall_seconds);
+    complete_velocities(world, skeleton.strain_velocity(end, in.dt));
+    solve_pressure(world, in.dt);
+    w.pressure.node_gradient(w.pressure.increment(), fdm::BoundaryValues::homogeneous,
+                             fdm::WallNormal::inward, w.node_gradient);
+  }
+  correct(world, end, in.dt);
+  measure_discharge(world);
+
+  mpm::MoveResult moved = skeleton.gather(in.time, in.dt);
+  const mpm::MoveResult flowed = layer.fluid.gather(in.time, in.dt);
+  skeleton.add_travel(std::max(0.0, flowed.largest_displacement - moved.largest_displacement));
+  moved.largest_speed = std::max(moved.largest_speed, flowed.largest_speed);
+  pass_open_sides(world, in.dt);
+  if (step % kDriftInterval == 0) {
+    Stopwatch watch(w.wall_seconds);
+    take_back_drift(world);
+  }
+  if (step % kWettingInterval == 0) wet_points(world);
+  return moved;
+}
+
+template <int D>
+HeldWater<D>::HeldWater(World<D>& world) : world_(world) {
+  if (!world.pore_water || !world.pore_water->layer) return;
+  world.pore_water->layer->held = true;
+  give(0.0, world.scene.water.density);
+}
+
+template <int D>
+HeldWater<D>::~HeldWater() {
+  if (!world_.pore_water || !world_.pore_water->layer) return;
+  world_.pore_water->layer->held = false;
+  give(world_.scene.water.density, 0.0);
+}
+
+// Points of soil in water that hold `from` [kg per m3 of pores] hold `to`.
+template <int D>
+void HeldWater<D>::give(double from, double to) {
+  const PoreWater<D>& w = *world_.pore_water;
+  const Grid<D>& grid = world_.skeleton.grid();
+  for (auto& body : world_.skeleton.bodies()) {
+    ParticleSet<D>& set = *body;
+    for (int p = 0; p < set.slots() && !set.pore_water.empty(); ++p) {
+      if (set.id[p] < 0 || set.pore_water[p] != from) continue;
+      Index<D> cell;
+      for (int d = 0; d < D; ++d)
+        cell[d] = std::clamp(static_cast<int>((set.position[d][p] - grid.origin()[d]) / grid.spacing()), 0,
+                             grid.cells()[d] - 1);
+      const int slot = grid.slot(cell);
+      if (to == 0 || (slot >= 0 && w.cells.active(slot))) set.pore_water[p] = to;
+    }
+  }
+}
+
+#define POLDER_INSTANTIATE(D)                             \
+  template class HeldWater<D>;                            \
+  template void update_layer_cells<D>(World<D>&);         \
+  template double surface_wave_speed<D>(const World<D>&); \
+  template mpm::MoveResult step_two_layer<D>(World<D>&, const StepInput&, long);
+POLDER_INSTANTIATE(2)
+POLDER_INSTANTIATE(3)
+
+}  // namespace polder::coupling
