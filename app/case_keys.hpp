@@ -12,6 +12,7 @@ const Table<coupling::NumericsSpec>& numerics_keys();
 const Table<coupling::WaterSpec>& pore_water_keys();
 const Table<coupling::Material>& material_keys();
 const Table<coupling::Body>& body_keys();
+const Table<coupling::Body>& water_body_keys();
 const Table<coupling::Boundary>& boundary_keys();
 const Table<coupling::WaterBoundary>& water_keys();
 const Table<coupling::WaterLine>& water_line_keys();

@@ -20,9 +20,9 @@ std::string body_key(std::size_t i) {
   return "body." + std::to_string(i + 1);
 }
 
-// The key that holds a body's shape.
-std::string shape_key(const Body& body, std::size_t i) {
-  return body_key(i) + (body.box ? ".box" : body.centre ? ".centre" : ".polygon");
+// The key that holds the shape of a body that stands at `key`.
+std::string shape_key(const Body& body, const std::string& key) {
+  return key + (body.box ? ".box" : body.centre ? ".centre" : ".polygon");
 }
 
 // Numbers in messages: enough digits to find the place.
@@ -78,7 +78,7 @@ void check_overlaps(const std::vector<bool>& sound, Reader& reader) {
       if (shared <= 1e-6 * cell) continue;
       const bool sized = scene.dimension() == 2 || !(scene.bodies[i].centre || scene.bodies[j].centre);
       reader.error(
-          shape_key(scene.bodies[j], j),
+          shape_key(scene.bodies[j], body_key(j)),
           "overlaps body \"" + scene.bodies[i].name + "\"" +
               (sized ? " by " + rounded(shared) + (scene.dimension() == 3 ? " m3" : " m2") : std::string()),
           "bodies that touch at most");
@@ -145,6 +145,24 @@ void check_random(const Body& body, std::size_t i, Reader& reader) {
   }
 }
 
+// Whether the shape of the body at `key` is one that lies in the grid and holds a particle.
+bool check_shape(const Body& body, const std::string& key, Reader& reader) {
+  const Scene& scene = reader.scene;
+  const std::string shape = shape_key(body, key);
+  const bool shaped = body.box || body.centre || !body.polygon.empty();
+  if (!shaped || reader.failed(shape) || reader.failed("grid.space") || !reader.given(shape) ||
+      (body.centre && reader.failed(key + ".radius")) || reader.failed(key + ".extrude"))
+    return false;
+  if ((!body.polygon.empty() && !check_polygon(body, shape, reader)) || !check_place(body, shape, reader))
+    return false;
+  if (reader.failed("grid") || reader.failed(key + ".particles_per_cell") ||
+      holds_a_particle(body, scene.grid, scene.dimension()))
+    return true;
+  reader.error(shape, "empty body: no particle lies in it",
+               "a body larger than a particle's share of a cell; a smaller grid.cell");
+  return false;
+}
+
 }  // namespace
 
 bool check_edges(const Polygon& p, const std::string& key, Reader& reader) {
@@ -162,21 +180,13 @@ bool check_edges(const Polygon& p, const std::string& key, Reader& reader) {
 
 void check_bodies(Reader& reader) {
   const Scene& scene = reader.scene;
+  for (std::size_t i = 0; i < scene.water_bodies.size(); ++i)
+    check_shape(scene.water_bodies[i], "water_body." + std::to_string(i + 1), reader);
   std::vector<bool> sound(scene.bodies.size(), false);
   bool all_sound = !scene.bodies.empty();
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
-    const std::string key = shape_key(body, i);
-    const bool shaped = body.box || body.centre || !body.polygon.empty();
-    if (shaped && !reader.failed(key) && !reader.failed("grid.space") && reader.given(key) &&
-        !(body.centre && reader.failed(body_key(i) + ".radius")) && !reader.failed(body_key(i) + ".extrude"))
-      sound[i] = (body.polygon.empty() || check_polygon(body, key, reader)) && check_place(body, key, reader);
-    if (sound[i] && !reader.failed("grid") && !reader.failed(body_key(i) + ".particles_per_cell") &&
-        !holds_a_particle(body, scene.grid, scene.dimension())) {
-      reader.error(key, "empty body: no particle lies in it",
-                   "a body larger than a particle's share of a cell; a smaller grid.cell");
-      sound[i] = false;
-    }
+    sound[i] = check_shape(body, body_key(i), reader);
     if (!reader.failed(body_key(i) + ".initial")) check_initial_stress(body, i, reader);
     check_random(body, i, reader);
     all_sound = all_sound && sound[i];

@@ -179,6 +179,7 @@ void check_factor(const coupling::Expectation& e, const std::string& expect, Rea
 void check_names(Reader& reader) {
   Scene& s = reader.scene;
   check_names_of(s.bodies, "body", reader);
+  check_names_of(s.water_bodies, "water_body", reader);
   check_names_of(s.boundaries, "boundary", reader);
   check_names_of(s.water_boundaries, "water", reader);
   check_names_of(s.water_lines, "water_line", reader);
@@ -283,6 +284,7 @@ void check_scene(Reader& reader) {
   check_names(reader);
   check_bodies(reader);
   check_water(reader);
+  check_water_layer(reader);
   check_boundaries(reader);
   check_measures(reader);
   const Vector3& g = reader.scene.gravity;

@@ -48,7 +48,7 @@ void check_materials(Reader& reader) {
               : "missing: the material is porous and the formulation is \"" + scene.formulation + "\"",
           "hydraulic conductivity greater than 0 [m/s]; or formulation = \"dry\"");
   }
-  if (!any && !reader.failed("material") && !scene.materials.empty())
+  if (!any && !reader.failed("material") && !scene.materials.empty() && scene.water_bodies.empty())
     reader.error("formulation",
                  "\"" + scene.formulation + "\" without a porous material: there is nowhere for water to be",
                  "a material with porosity greater than 0; or formulation = \"dry\"");
@@ -158,8 +158,9 @@ void check_water_boundaries(Reader& reader) {
       continue;
     }
     const Extent part = side_part(scene, w);
-    const bool meets = std::any_of(bodies.begin(), bodies.end(),
-                                   [&](const Body* b) { return touches(*b, scene, w.side, part); });
+    const bool meets = scene.layered() || std::any_of(bodies.begin(), bodies.end(), [&](const Body* b) {
+                         return touches(*b, scene, w.side, part);
+                       });
     if (!meets)
       reader.error(key, "no porous soil touches the " + side_name(w.side, scene.dimension()) + " side here",
                    "a side of the grid on which a body of porous material lies");

@@ -49,6 +49,7 @@ Frames::Frames(const Simulation& s, const RunFolder& folder, std::optional<doubl
     if (wet || (f != "pore_pressure" && f != "saturation")) fields_.push_back(f);
   soil_.emplace(series(folder, "soil", keep_until));
   if (wet) fluid_.emplace(series(folder, "fluid", keep_until));
+  if (scene.layered()) water_.emplace(series(folder, "water", keep_until));
 }
 
 void Frames::see(const Simulation& s) {
@@ -72,6 +73,14 @@ void Frames::write(const Simulation& s) {
   soil.points = points.positions;
   soil.point_data = arrays(points.fields, labels);
   soil_->write(soil);
+  if (water_) {
+    const coupling::PointFrame flowing = s.water_points();
+    Frame water;
+    water.time = s.time();
+    water.points = flowing.positions;
+    water.point_data = arrays(flowing.fields, labels);
+    water_->write(water);
+  }
   if (fluid_) {
     const coupling::CellFrame cells = s.water_cells();
     Frame fluid;

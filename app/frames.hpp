@@ -30,7 +30,7 @@ class Frames {
   int stage_;  // when last seen
   double last_ = -1;
   std::vector<std::string> fields_;
-  std::optional<FrameSeries> soil_, fluid_;
+  std::optional<FrameSeries> soil_, fluid_, water_;
 };
 
 }  // namespace polder::app

@@ -263,6 +263,28 @@ void check_shape(Body& body, const std::string& path, Reader& reader) {
                  "the axis stands still in an axisymmetric grid", "velocity = [0, vy]");
 }
 
+void add_shape(Table<Body>& t) {
+  t.add("polygon", section_points(3), &Body::polygon,
+        "Corners of a plane body, in either sense; not closed by repeating the first. In 3D the section of "
+        "a prism along y.");
+  t.add("extrude", depth_range(), &Body::extrude,
+        "Where the prism begins and ends along y (3D); default: the whole depth of the grid.")
+      .only_with("polygon", "polygon", [](const Body& b) { return !b.polygon.empty(); });
+  t.add("box", box(), &Body::box, "Lower and upper corner of a box.");
+  t.add("centre", vector(dimension::kLength), &Body::centre, "Centre of a disk, in 3D of a ball.");
+  t.add("radius", number(dimension::kLength, kPositive), &Body::radius, "Radius of the disk or ball.")
+      .without_default()
+      .only_with("centre", "centre", [](const Body& b) { return b.centre.has_value(); });
+}
+
+void add_particles(Table<Body>& t) {
+  t.add("particles_per_cell", particles_per_cell(), &Body::particles_per_axis, "Particles in a full cell.");
+  t.add("jitter", number(dimension::kNone, {.min = 0, .max = 0.9}), &Body::jitter,
+        "Largest random displacement of a particle, as a share of the particle spacing.");
+  t.add("seed", integer(0, 1'000'000'000), &Body::seed, "Seed of the random displacements.")
+      .only_with("jitter", "jitter greater than 0", [](const Body& b) { return b.jitter > 0; });
+}
+
 }  // namespace
 
 const Table<Body>& body_keys() {
@@ -270,28 +292,27 @@ const Table<Body>& body_keys() {
     Table<Body> t;
     t.add("name", identifier(), &Body::name, "Name in messages and results; default: body-1, body-2, ...");
     t.add("material", material_reference(), &Body::material, "The material it consists of.").required();
-    t.add("polygon", section_points(3), &Body::polygon,
-          "Corners of a plane body, in either sense; not closed by repeating the first. In 3D the section of "
-          "a prism along y.");
-    t.add("extrude", depth_range(), &Body::extrude,
-          "Where the prism begins and ends along y (3D); default: the whole depth of the grid.")
-        .only_with("polygon", "polygon", [](const Body& b) { return !b.polygon.empty(); });
-    t.add("box", box(), &Body::box, "Lower and upper corner of a box.");
-    t.add("centre", vector(dimension::kLength), &Body::centre, "Centre of a disk, in 3D of a ball.");
-    t.add("radius", number(dimension::kLength, kPositive), &Body::radius, "Radius of the disk or ball.")
-        .without_default()
-        .only_with("centre", "centre", [](const Body& b) { return b.centre.has_value(); });
-    t.add("particles_per_cell", particles_per_cell(), &Body::particles_per_axis, "Particles in a full cell.");
-    t.add("jitter", number(dimension::kNone, {.min = 0, .max = 0.9}), &Body::jitter,
-          "Largest random displacement of a particle, as a share of the particle spacing.");
-    t.add("seed", integer(0, 1'000'000'000), &Body::seed, "Seed of the random displacements.")
-        .only_with("jitter", "jitter greater than 0", [](const Body& b) { return b.jitter > 0; });
+    add_shape(t);
+    add_particles(t);
     t.add("velocity", vector(dimension::kVelocity), &Body::velocity, "Initial velocity.");
     t.add("spin", number(dimension::kAngularVelocity), &Body::spin,
           "Initial angular velocity about the body's centroid, counter-clockwise (2D).");
     t.add("initial", one_table(initial_keys()), &Body::stress, "Initial effective stress.");
     t.add("random", list_of_tables(random_keys()), &Body::random,
           "Properties that scatter in space as random fields.");
+    t.check(check_shape);
+    return t;
+  }();
+  return table;
+}
+
+const Table<Body>& water_body_keys() {
+  static const Table<Body> table = [] {
+    Table<Body> t;
+    t.add("name", identifier(), &Body::name, "Name in messages; default: water_body-1, water_body-2, ...");
+    add_shape(t);
+    add_particles(t);
+    t.add("velocity", vector(dimension::kVelocity), &Body::velocity, "Initial velocity.");
     t.check(check_shape);
     return t;
   }();

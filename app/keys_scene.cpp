@@ -106,13 +106,22 @@ const Table<NumericsSpec>& numerics_keys() {
           "Cure of volumetric locking: cell-average takes one volumetric strain for a cell; automatic "
           "decides by the "
           "materials.");
+    t.add(
+        "water_transfer", choice<Transfer>({{"apic", Transfer::apic}, {"flip", Transfer::flip}}),
+        &NumericsSpec::water_transfer,
+        "The same between particles of water and the grid, in formulations with such: affine, or a FLIP/PIC "
+        "blend.");
+    t.add("water_flip", number(dimension::kNone, {.min = 0, .max = 1}), &NumericsSpec::water_flip,
+          "Share of FLIP in that blend.")
+        .only_with("water_transfer", "water_transfer = \"flip\"",
+                   [](const NumericsSpec& n) { return n.water_transfer == Transfer::flip; });
     t.add("time_step", number(dimension::kTime, kPositive), &NumericsSpec::time_step,
           "Fixed time step; without it the step is chosen from the limits.");
     t.add("courant", number(dimension::kNone, {.min = 0, .max = 1.5, .min_open = true}),
           &NumericsSpec::courant,
           "Time step as a share of cell over drained wave speed, with formulation higo of what the water "
           "allows, which is far less; the stable limit, 1.7 or more for musl, is what explain prints. "
-          "Damped stages take 1 at most, because damping shortens it.")
+          "Damped stages take 1 at most, because damping shortens it; formulation two-layer 0.5.")
         .only_with("time_step", "time_step absent", [](const NumericsSpec& n) { return !n.time_step; });
     t.add("rhie_chow", number(dimension::kNone, {.min = 0, .max = 1}), &NumericsSpec::rhie_chow,
           "Coefficient of the term that damps checkerboard patterns of the pore pressure.");
@@ -153,9 +162,14 @@ const Table<Scene>& case_keys() {
           "How it is computed; the defaults are meant to be kept.");
     t.add("pore_water", one_table(pore_water_keys()), &Scene::water,
           "Properties and initial state of the pore water.");
-    t.add("material", named_tables(material_keys(), material_name), &Scene::materials, "Materials, by name.")
-        .required();
-    t.add("body", list_of_tables(body_keys()), &Scene::bodies, "Bodies of one material each.").required();
+    t.add("material", named_tables(material_keys(), material_name), &Scene::materials,
+          "Materials, by name; needed by bodies.");
+    t.add("body", list_of_tables(body_keys()), &Scene::bodies,
+          "Bodies of one material each; at least one, or a water_body.");
+    t.add(
+        "water_body", list_of_tables(water_body_keys()), &Scene::water_bodies,
+        "Water that stands or moves by itself: reservoirs, waves, floods; in formulations in which water has "
+        "particles of its own. Where it overlaps a body the soil keeps its place.");
     t.add("boundary", list_of_tables(boundary_keys()), &Scene::boundaries,
           "Mechanical boundaries. A side of the grid without one is a roller.");
     t.add("water", list_of_tables(water_keys()), &Scene::water_boundaries,
@@ -179,6 +193,10 @@ const Table<Scene>& case_keys() {
       not_empty("material", scene.materials.empty());
       not_empty("body", scene.bodies.empty());
       not_empty("stage", scene.stages.empty());
+      if (scene.water_bodies.empty() && !reader.given("water_body")) {
+        if (!reader.given("material")) reader.error("material", "missing", "[material.NAME]");
+        if (!reader.given("body")) reader.error("body", "missing", "[[body]]");
+      }
     });
     return t;
   }();

@@ -35,6 +35,12 @@ SizeEstimate estimate_size(const coupling::Scene& scene) {
   for (const coupling::Body& body : scene.bodies) {
     const double cells = measure(body, d) / cell;
     filled += cells;
+    // In two layers the pores have points of their own.
+    s.particles += (scene.layered() ? 2 : 1) * cells * std::pow(body.particles_per_axis, d);
+  }
+  for (const coupling::Body& body : scene.water_bodies) {
+    const double cells = measure(body, d) / cell;
+    filled += cells;
     s.particles += cells * std::pow(body.particles_per_axis, d);
   }
   s.cells = 1;

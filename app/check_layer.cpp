@@ -1,0 +1,70 @@
+// What a formulation in which water has particles of its own needs, and what it cannot do yet.
+#include "app/check_scene.hpp"
+
+namespace polder::app {
+
+using coupling::Scene;
+using coupling::Stage;
+using coupling::WaterBoundary;
+
+namespace {
+
+void check_water_of_layer(Reader& reader) {
+  const Scene& scene = reader.scene;
+  using Kind = WaterBoundary::Kind;
+  for (std::size_t i = 0; i < scene.water_boundaries.size(); ++i) {
+    const WaterBoundary& w = scene.water_boundaries[i];
+    const std::string key = "water." + std::to_string(i + 1);
+    const bool known = w.kind == Kind::head || w.kind == Kind::pressure || w.kind == Kind::impermeable ||
+                       w.kind == Kind::surface;
+    if (!known && !reader.failed(key))
+      reader.error(key + ".kind", "not with formulation \"" + scene.formulation + "\"",
+                   "head, pressure, impermeable, surface");
+  }
+  if (scene.water.outside_level && !reader.failed("pore_water.outside_level"))
+    reader.error("pore_water.outside_level",
+                 "in formulation \"" + scene.formulation + "\" open water has particles of its own",
+                 "a [[water_body]]");
+}
+
+void check_stages_of_layer(Reader& reader) {
+  const Scene& scene = reader.scene;
+  for (std::size_t i = 0; i < scene.stages.size(); ++i) {
+    const Stage& s = scene.stages[i];
+    const std::string key = "stage." + std::to_string(i + 1);
+    if (reader.failed(key)) continue;
+    if (!s.moves())
+      reader.error(key + ".mode", "formulation \"" + scene.formulation + "\" moves its water step by step",
+                   "\"equilibrium\", \"dynamic\"; or formulation = \"one-layer\"");
+    else if (!s.water_flows && (s.mode == Stage::Mode::dynamic || s.damping > 0))
+      reader.error(key + ".water_flows", "the particles of water cannot be held while soil moves in time",
+                   "true");
+  }
+}
+
+}  // namespace
+
+void check_water_layer(Reader& reader) {
+  const Scene& scene = reader.scene;
+  if (reader.failed("formulation")) return;
+  if (!scene.layered()) {
+    if (!scene.water_bodies.empty() && !reader.failed("water_body"))
+      reader.error("water_body.1",
+                   "formulation \"" + scene.formulation + "\" has no particles of water to fill it with",
+                   "formulation = \"two-layer\"");
+    return;
+  }
+  check_water_of_layer(reader);
+  check_stages_of_layer(reader);
+  for (const coupling::Material& m : scene.materials)
+    if (const std::string key = "material." + m.name + ".retention"; m.retains() && !reader.failed(key))
+      reader.error(
+          key, "formulation \"" + scene.formulation + "\" has no unsaturated flow in this version",
+          "no retention; pore_water.saturation_above, suction_above; or formulation = \"one-layer\"");
+  if (scene.grid.space == Space::axisymmetric && !reader.failed("grid.space"))
+    reader.error("grid.space",
+                 "formulation \"" + scene.formulation + "\" is not in this version for an axisymmetric grid",
+                 "\"plane-strain\", \"3d\"");
+}
+
+}  // namespace polder::app
