@@ -69,7 +69,9 @@ std::vector<Column> Simulation::Run<D>::history() const {
   }
   if (world->pore_water) {
     PoreWater<D>& water = *world->pore_water;
-    const double change = t.water_volume - initial_water_volume + water.outflow + water.storage;
+    // Points of water keep their volume whatever the pressure; what compression takes up is not among it.
+    const double storage = water.layer ? 0.0 : water.storage;
+    const double change = t.water_volume - initial_water_volume + water.outflow + storage;
     add("water_mass_error[-]", initial_water_volume > 0 ? change / initial_water_volume : 0.0);
     add("water_outflow[m3]", water.outflow);
     double largest = 0;

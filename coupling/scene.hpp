@@ -76,8 +76,10 @@ struct NumericsSpec {
   StressOrder order = StressOrder::musl;
   Transfer transfer = Transfer::flip;
   double flip = 0.99;  // share of FLIP in the blend [-]
-  // Points of water: affine velocities (apic), or a blend with this share of FLIP.
-  Transfer water_transfer = Transfer::apic;
+  // Points of water: a blend with this share of FLIP, as the soil's, or affine velocities (apic) for water
+  // that splashes by itself. Affine water in soil under MUSL feeds energy to undrained motion: the soil's
+  // nodal velocities lag behind what drag has made equal, the water's do not (docs/theory/two-layer.md).
+  Transfer water_transfer = Transfer::flip;
   double water_flip = 0.99;
   LockingCure locking = LockingCure::automatic;
   double courant = 0.5;             // step as a share of the limit of the skeleton wave [-]
