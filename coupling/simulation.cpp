@@ -311,10 +311,12 @@ void Simulation::Run<D>::visit(StateVisitor& v) {
 template <int D>
 void Simulation::Run<D>::visit_water(StateVisitor& v) {
   PoreWater<D>& water = *world->pore_water;
+  Reals owed;
   if (water.layer) {
     WaterLayer<D>& layer = *water.layer;
     visit_points(v, "water/", layer.fluid.points());
-    v.reals("water_owed", layer.owed);
+    owed = layer.owed;
+    v.reals("water_owed", owed);
     v.number("water_added", layer.added), v.number("water_removed", layer.removed);
     if (v.reading()) layer.fluid.follow_grid();
   }
@@ -337,6 +339,7 @@ void Simulation::Run<D>::visit_water(StateVisitor& v) {
   }
   if (!v.reading()) return;
   carry_water(*world);
+  if (water.layer) water.layer->owed = owed;  // in the order of the slots already
   if (unsaturated) {
     // The cells follow the points when the next step begins, as they would have.
     unsaturated->field.restore(pressure, saturation, cells);

@@ -83,7 +83,11 @@ TEST_CASE("two layers: a run cut at any step goes on with the same bits") {
       state.load(second);
       coupling::MemoryState again;
       again.save(second);
-      CHECK(again.differences(state).empty());
+      // The weight of points at nodes is found anew at the beginning of each step.
+      for (const std::string& array : again.differences(state)) {
+        CAPTURE(array);
+        CHECK(array.ends_with("/nodal_weight"));
+      }
       while (!second.finished()) second.step();
       again.save(second);
       const std::vector<std::string> different = again.differences(whole.state);
