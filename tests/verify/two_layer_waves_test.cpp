@@ -54,3 +54,55 @@ TEST_CASE("sloshing: period of the first mode") {
   c.cell = 0.05;
   CHECK(std::abs(sloshing(c, 0.02, 6).period / r.exact - 1) > 2 * std::abs(r.period / r.exact - 1));
 }
+
+TEST_CASE(
+    "harmonic column: each formulation follows its own equations, and only two layers those with all "
+    "inertia") {
+  set_threads(1);
+  using enum ColumnEquations;
+  const auto errors = [](const HarmonicGroups& g) {
+    Choice c{.formulation = "two-layer", .cell = 0.05};
+    const Harmonic two = harmonic_column(c, g, 400, 6);
+    c.formulation = "one-layer";
+    return std::pair{two, harmonic_column(c, g, 400, 6)};
+  };
+  HarmonicGroups slow;
+  slow.pi1 = 1, slow.pi2 = 1e-3;  // consolidation: all agree
+  const auto [slow_two, slow_one] = errors(slow);
+  CHECK(slow_two.error(uw, slow) < 0.015);
+  CHECK(slow_one.error(uw, slow) < 0.015);
+  HarmonicGroups fast;
+  fast.pi1 = 10, fast.pi2 = 0.1;  // relative inertia counts
+  const auto [two, one] = errors(fast);
+  CHECK(two.error(uw, fast) < 0.01);
+  CHECK(one.error(darcy, fast) < 0.01);
+  CHECK(one.error(uw, fast) > 0.2);
+}
+
+TEST_CASE("dam break: front and depth at the wall against Martin and Moyce, profile against Ritter") {
+  set_threads(1);
+  const DamBreak r = dam_break({.formulation = "two-layer", .cell = 0.1}, 1, 2, 6, 1.0, 0.01);
+  const auto at = [&](const std::vector<double>& values, double time) {
+    const auto next = std::lower_bound(r.time.begin(), r.time.end(), time);
+    return values[static_cast<std::size_t>(next - r.time.begin())];
+  };
+  CHECK(std::abs(r.water_error) < 1e-12);
+  // Earlier than in the experiment, whose gate takes time to open: by 0.3 units of time.
+  for (const std::vector<double>& row : ReferenceCsv("martin_moyce_front.csv").rows)
+    if (row[0] > 1.4)
+      CHECK(at(r.front, (row[0] - 0.3) / std::sqrt(2 * kGravity)) == doctest::Approx(row[1]).epsilon(0.06));
+  for (const std::vector<double>& row : ReferenceCsv("martin_moyce_height.csv").rows)
+    if (row[0] < 3.1) CHECK(std::abs(at(r.height, row[0] / std::sqrt(kGravity)) / 2 - row[1]) < 0.06);
+  const DamBreak shallow = dam_break({.formulation = "two-layer", .cell = 0.1}, 5, 1, 12, 1.0, 0.1);
+  const ReferenceCsv ritter("dambreak_ritter.csv");
+  double difference = 0;
+  int columns = 0;
+  for (const auto& [x, depth] : shallow.profile) {
+    if (x < -3 || x > 4) continue;
+    const auto& rows = ritter.rows;
+    std::size_t i = 0;
+    while (rows[i][0] < x - 0.06) ++i;
+    difference += std::abs(depth - 0.5 * (rows[i][5] + rows[i + 1][5])), ++columns;
+  }
+  CHECK(difference / columns < 0.05);
+}
