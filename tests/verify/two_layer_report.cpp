@@ -174,9 +174,9 @@ void harmonic_table() {
     double pi1, pi2;
     int cells, periods;
   };
-  for (const Run& run :
-       {Run{0.1, 0.01, 40, 6}, Run{0.1, 0.1, 40, 6}, Run{0.1, 1, 40, 24}, Run{1, 0.001, 20, 6},
-        Run{1, 0.1, 20, 6}, Run{1, 1, 20, 8}, Run{10, 0.1, 20, 8}, Run{10, 1, 20, 24}}) {
+  for (const Run& run : {Run{0.1, 0.01, 40, 6}, Run{0.1, 0.1, 40, 6}, Run{0.1, 1, 40, 24},
+                         Run{1, 0.001, 20, 6}, Run{1, 0.1, 20, 6}, Run{1, 1, 20, 8}, Run{1, 1, 40, 8},
+                         Run{10, 0.1, 20, 8}, Run{10, 1, 20, 24}, Run{10, 1, 40, 24}}) {
     HarmonicGroups g;
     g.pi1 = run.pi1, g.pi2 = run.pi2;
     const int steps = static_cast<int>(std::lround(std::max(400.0, 400 * run.cells / 20.0)));
