@@ -106,11 +106,10 @@ const Table<NumericsSpec>& numerics_keys() {
           "Cure of volumetric locking: cell-average takes one volumetric strain for a cell; automatic "
           "decides by the "
           "materials.");
-    t.add(
-        "water_transfer", choice<Transfer>({{"apic", Transfer::apic}, {"flip", Transfer::flip}}),
-        &NumericsSpec::water_transfer,
-        "The same between particles of water and the grid, in formulations with such: affine, or a FLIP/PIC "
-        "blend.");
+    t.add("water_transfer", choice<Transfer>({{"flip", Transfer::flip}, {"apic", Transfer::apic}}),
+          &NumericsSpec::water_transfer,
+          "The same between particles of water and the grid, in formulations with such: a FLIP/PIC blend, or "
+          "affine, which is quieter in free water but gains energy in soil under musl.");
     t.add("water_flip", number(dimension::kNone, {.min = 0, .max = 1}), &NumericsSpec::water_flip,
           "Share of FLIP in that blend.")
         .only_with("water_transfer", "water_transfer = \"flip\"",

@@ -240,6 +240,7 @@ void add_water_layer(World<D>& world) {
   const Scene& scene = world.scene;
   water.layer = std::make_unique<WaterLayer<D>>(
       world.skeleton.grid(), scene, water_walls<D>(scene, world.skeleton.boundaries()), water.cells);
+  water.cells.set_inclined_surfaces(true);
   seed_water(world);
   world.skeleton.attach(water.layer->fluid.points());
 }

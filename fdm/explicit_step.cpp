@@ -91,7 +91,7 @@ void PressureField<D>::advance(const PressureStep& step) {
   if (!(step.dt > 0)) throw std::logic_error("PressureField: the time step must be positive");
   const auto cells = cells_.cells();
   const auto boundary = cells_.boundary_faces();
-  face_terms(step.mobility, step.darcy_mobility, step.rhie_chow, step.pressure_gradient);
+  face_terms(step, true);
   for_each(cells_.count(), [&](int c) {
     divergence_[c] = cell_outflow<D>(cells[c], step.velocity);
     storage_[c] = step.porosity[cells[c].slot] / water_.bulk_modulus * cells[c].volume / step.dt;

@@ -245,10 +245,13 @@ void WaterCells<D>::refresh_distances(std::span<const double> fill) {
     if (kind == Kind::surface || f.free_surface) {
       const double own = std::min(fill[c.slot], 1.0),
                    beyond = f.outside < 0 ? 0 : std::min(fill[f.outside], 1.0);
-      Index<D> behind = c.index;
-      behind[f.axis] -= f.outward;
-      const int slot = grid_.is_cell(behind) ? grid_.slot(behind) : -1;
-      f.distance = h * surface_distance(slot < 0 ? own : std::min(fill[slot], 1.0), own, beyond);
+      f.distance = h * (own + beyond - 0.5);
+      if (inclined_surfaces_) {
+        Index<D> behind = c.index;
+        behind[f.axis] -= f.outward;
+        const int slot = grid_.is_cell(behind) ? grid_.slot(behind) : -1;
+        f.distance = h * surface_distance(slot < 0 ? own : std::min(fill[slot], 1.0), own, beyond);
+      }
     }
     if (f.axis == D - 1) height += f.outward * f.distance;
     switch (kind) {

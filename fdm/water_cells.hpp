@@ -82,6 +82,10 @@ class WaterCells {
   // lists were rebuilt.
   bool update(std::span<const double> fill, const WaterConditions<D>& conditions);
 
+  // Distances to surfaces that are but slightly inclined are measured along themselves (see surface_distance
+  // in the source): for water that flows freely. Off by default.
+  void set_inclined_surfaces(bool on) { inclined_surfaces_ = on; }
+
   const Grid<D>& grid() const { return grid_; }
   Space space() const { return space_; }
   const WaterConditions<D>& conditions() const { return conditions_; }
@@ -114,6 +118,7 @@ class WaterCells {
   WaterConditions<D> conditions_;
   std::uint64_t grid_revision_ = 0;
   std::uint64_t revision_ = 0;
+  bool inclined_surfaces_ = false;
   std::vector<unsigned char> eligible_;  // slots that are cells with all corner nodes stored
   std::vector<unsigned char> mask_;      // the mask the lists were built for
   std::vector<int> number_;

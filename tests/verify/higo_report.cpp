@@ -24,7 +24,7 @@ void terzaghi_table() {
       "time [s] |\n|---|---|---|---|---|---|---|---|---|\n");
   for (const double k : {1e-3, 1e-4})
     for (const char* f : kFormulations) {
-      const Consolidation r = terzaghi({.conductivity = k, .formulation = f}, {0.05, 0.2, 0.5});
+      const Consolidation r = terzaghi({.formulation = f, .conductivity = k}, {0.05, 0.2, 0.5});
       std::printf("| %g | `%s` | %.4f | %.4f | %.4f | %.4f | %ld | %.2e | %.2f |\n", k, f,
                   r.pressure_error[0], r.pressure_error[1], r.pressure_error[2], r.settlement_ratio, r.steps,
                   r.step, r.seconds);
@@ -39,7 +39,7 @@ void limit_table() {
       "| corner, 0.75 |\n|---|---|---|---|---|---|---|---|---|---|\n");
   for (const bool musl : {true, false})
     for (const double k : {1e-12, 1e-5, 1e-4, 1e-3, 1e-2}) {
-      Block b{{16, 12}, {.musl = musl, .conductivity = k, .formulation = "higo"}};
+      Block b{{16, 12}, {.formulation = "higo", .musl = musl, .conductivity = k}};
       const double analysed = analysed_limit(b.choice, 0.4, 1990);
       std::printf("| %s | %g | %.2e | %.2f | %.2f |", musl ? "MUSL" : "USL", k, analysed,
                   wave_step(b) / analysed, predicted_step(b) / analysed);
@@ -60,7 +60,7 @@ void hydrostatic_table() {
   for (const ShapeKind shape : {ShapeKind::gimp, ShapeKind::quadratic_bspline})
     for (const double offset : {0.0625, 0.1875, 0.3125, 0.4375, 0.52, 0.5625, 0.6875, 0.8125, 0.9375}) {
       const Rest r =
-          hydrostatic({.shape = shape, .bulk_modulus = 2.2e8, .offset = offset, .formulation = "higo"}, 4);
+          hydrostatic({.formulation = "higo", .shape = shape, .bulk_modulus = 2.2e8, .offset = offset}, 4);
       std::printf("| %s | %g | %.1e | %.1e | %.1e | %.1e |\n", shape == ShapeKind::gimp ? "GIMP" : "B-spline",
                   offset, r.pressure_error, r.point_stress_error, r.cell_stress_error, r.speed);
       std::fflush(stdout);
@@ -73,7 +73,7 @@ void rain_table() {
       "|\n|---|---|---|---|---|---|---|---|---|\n");
   for (const double h : {0.2, 0.1, 0.05})
     for (const char* f : kFormulations) {
-      const Rain r = rain({.cell = h, .formulation = f});
+      const Rain r = rain({.formulation = f, .cell = h});
       std::printf("| `%s` | %g | %.4f | %.4f | %.4f | %.4f | %.1e | %ld | %.1f |\n", f, h, r.saturation[0],
                   r.saturation[1], r.saturation[2], -1e3 * r.settlement, r.water_error, r.steps, r.seconds);
       std::fflush(stdout);
@@ -87,7 +87,7 @@ void slump_table() {
       "s | 2 s | steps | time [s] |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   const auto row = [](const char* f, double stiffness, double courant) {
     const Slumped r =
-        slump_in_time({.courant = courant, .conductivity = 1e-5, .bulk_modulus = stiffness, .formulation = f},
+        slump_in_time({.formulation = f, .courant = courant, .conductivity = 1e-5, .bulk_modulus = stiffness},
                       {0.25, 0.5, 1, 2});
     std::printf("| `%s` | %g | %g |", f, stiffness, courant);
     for (const std::vector<double>* list : {&r.height, &r.runout})

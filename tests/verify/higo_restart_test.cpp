@@ -18,7 +18,7 @@ namespace {
 // Soft soil slumps, first with its pore pressure held; cells come and go.
 Scene slumping() {
   Scene s =
-      slump_scene({.courant = 0.4, .conductivity = 1e-4, .bulk_modulus = 2.2e7, .formulation = "higo"}, 0.3);
+      slump_scene({.formulation = "higo", .courant = 0.4, .conductivity = 1e-4, .bulk_modulus = 2.2e7}, 0.3);
   s.bodies[0].jitter = 0.2;
   coupling::Stage held = s.stages[0];
   held.name = "held", held.duration = 0.1, held.water_flows = false;
@@ -28,7 +28,7 @@ Scene slumping() {
 
 // Wet sand slumps in the rain: cells fill and the step becomes that of stiff water.
 Scene soaking() {
-  Scene s = rain_scene({.cell = 0.1, .bulk_modulus = 2.2e7, .formulation = "higo"}, 0.6);
+  Scene s = rain_scene({.formulation = "higo", .cell = 0.1, .bulk_modulus = 2.2e7}, 0.6);
   s.grid.size = {2, 1.4, 0};
   s.bodies[0].box = {{coupling::Vector3{}, coupling::Vector3{0.8, 1, 0}}};
   s.materials[0].young = 5e4;

@@ -25,7 +25,7 @@ TEST_CASE("Terzaghi's consolidation: as exact as with a projected pressure") {
   set_threads(1);
   for (const ShapeKind shape : kShapes) {
     CAPTURE(static_cast<int>(shape));
-    const Choice c{.shape = shape, .bulk_modulus = 2.2e8, .formulation = "higo"};
+    const Choice c{.formulation = "higo", .shape = shape, .bulk_modulus = 2.2e8};
     const Consolidation r = terzaghi(c, {0.05, 0.2, 0.5});
     CHECK(r.pressure_error[0] <= 0.008);
     CHECK(r.pressure_error[1] <= 0.004);
@@ -39,7 +39,7 @@ TEST_CASE("the step limit is that of the analysis to 10 %, and the automatic ste
   set_threads(1);
   for (const bool musl : {true, false})
     for (const double k : {1e-5, 1e-4, 1e-3}) {
-      Block b{{12, 8}, {.musl = musl, .conductivity = k, .formulation = "higo"}};
+      Block b{{12, 8}, {.formulation = "higo", .musl = musl, .conductivity = k}};
       CAPTURE(musl);
       CAPTURE(k);
       const double analysed = analysed_limit(b.choice, 0.4, 1990), formula = wave_step(b);
@@ -66,7 +66,7 @@ TEST_CASE("the limit that the program prints, from a small patch, holds for bloc
   set_threads(1);
   for (const bool musl : {true, false})
     for (const double k : {1e-12, 1e-4, 1e-3}) {
-      Block b{{12, 8}, {.musl = musl, .conductivity = k, .formulation = "higo"}};
+      Block b{{12, 8}, {.formulation = "higo", .musl = musl, .conductivity = k}};
       const double limit = predicted_step(b);
       CAPTURE(musl);
       CAPTURE(k);
@@ -88,11 +88,11 @@ TEST_CASE("hydrostatic column, its surface anywhere in a cell") {
   set_threads(1);
   for (const ShapeKind shape : kShapes)
     for (const double offset : {0.0625, 0.52, 0.9375}) {
-      const Rest r = hydrostatic({.shape = shape,
+      const Rest r = hydrostatic({.formulation = "higo",
+                                  .shape = shape,
                                   .conductivity = 1e-3,
                                   .bulk_modulus = 2.2e7,
-                                  .offset = offset,
-                                  .formulation = "higo"},
+                                  .offset = offset},
                                  4);
       CAPTURE(static_cast<int>(shape));
       CAPTURE(offset);
@@ -104,7 +104,7 @@ TEST_CASE("hydrostatic column, its surface anywhere in a cell") {
 
 TEST_CASE("infiltration with a moving skeleton: the same as with implicit steps, no water lost") {
   set_threads(1);
-  const Rain a = rain({.cell = 0.2, .formulation = "higo"}, 60), b = rain({.cell = 0.2}, 60);
+  const Rain a = rain({.formulation = "higo", .cell = 0.2}, 60), b = rain({.cell = 0.2}, 60);
   for (int i = 0; i < 3; ++i) CHECK(a.saturation[i] == doctest::Approx(b.saturation[i]).epsilon(5e-4));
   CHECK(a.saturation[0] > a.saturation[1] + 0.1);
   CHECK(a.settlement == doctest::Approx(b.settlement).epsilon(1e-3));
@@ -117,7 +117,7 @@ TEST_CASE("a slump is that of the projected pressure") {
   set_threads(1);
   const std::vector<double> times{0.25, 0.5, 1};
   const Slumped a = slump_in_time(
-      {.courant = 0.4, .conductivity = 1e-5, .bulk_modulus = 2.2e7, .formulation = "higo"}, times);
+      {.formulation = "higo", .courant = 0.4, .conductivity = 1e-5, .bulk_modulus = 2.2e7}, times);
   const Slumped b = slump_in_time({.courant = 0.1, .conductivity = 1e-5, .bulk_modulus = 2.2e7}, times);
   for (std::size_t i = 0; i < times.size(); ++i) {
     CAPTURE(times[i]);
@@ -128,7 +128,7 @@ TEST_CASE("a slump is that of the projected pressure") {
 
 TEST_CASE("a stage of seepage, implicit, hands its flow to explicit steps") {
   set_threads(1);
-  Scene s = wet_scene({.conductivity = 1e-4, .bulk_modulus = 2.2e7, .formulation = "higo"}, 0.4, 1.3, 0.5);
+  Scene s = wet_scene({.formulation = "higo", .conductivity = 1e-4, .bulk_modulus = 2.2e7}, 0.4, 1.3, 0.5);
   s.materials = {elastic_soil(1e7, 0.2, 0.4, 1e-4)};
   s.bodies = {box(0, 0, 0.4, 1, {})};
   s.bodies[0].stress.kind = coupling::InitialStress::Kind::k0;
@@ -156,7 +156,7 @@ TEST_CASE("a stage of seepage, implicit, hands its flow to explicit steps") {
 }
 
 TEST_CASE("incompressible water is refused") {
-  Scene s = wet_scene({.bulk_modulus = 1e300 * 1e300, .formulation = "higo"}, 0.4, 1, 1);
+  Scene s = wet_scene({.formulation = "higo", .bulk_modulus = 1e300 * 1e300}, 0.4, 1, 1);
   s.materials = {elastic_soil(1e7, 0.2, 0.4, 1e-4)};
   s.bodies = {box(0, 0, 0.4, 0.8, {})};
   Simulation sim(s);

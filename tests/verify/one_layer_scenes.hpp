@@ -29,7 +29,6 @@ struct Choice {
   int per_axis = 2;             // particles in a cell along each axis
   double rhie_chow = 0.05;      // chi
   coupling::LockingCure locking = coupling::LockingCure::automatic;
-  const char* formulation = "one-layer";
 };
 
 mpm::MaterialParameters elastic_soil(double young, double poisson, double porosity, double conductivity,
