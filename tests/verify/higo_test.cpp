@@ -1,6 +1,6 @@
 // Formulation higo, the pore pressure advanced explicitly from the bulk modulus: beside exact solutions,
 // beside the projected pressure of one-layer, and its step limit. Most cases take softer water than is true,
-// which lengthens the step and changes nothing else; true water is in higo_long_test.cpp.
+// which lengthens the step and changes nothing else; higo_report prints what true water gives.
 #include <doctest/doctest.h>
 
 #include <cmath>
