@@ -89,6 +89,15 @@ std::vector<int> ParticleSet<D>::occupied_block_numbers(const Grid<D>& grid) con
 }
 
 template <int D>
+Index<D> ParticleSet<D>::cell_of(const Grid<D>& grid, int p) const {
+  Index<D> cell;
+  for (int d = 0; d < D; ++d)
+    cell[d] = std::clamp(static_cast<int>((position[d][p] - grid.origin()[d]) / grid.spacing()), 0,
+                         grid.cells()[d] - 1);
+  return cell;
+}
+
+template <int D>
 void ParticleSet<D>::sort(const Grid<D>& grid) {
   constexpr int kCells = Grid<D>::kCells;
   // Key of a point: stored block, then cell inside it. Counting sort, stable: the order is unique.
@@ -96,11 +105,7 @@ void ParticleSet<D>::sort(const Grid<D>& grid) {
   std::vector<int> key(slots(), -1), start(static_cast<std::size_t>(blocks) * kCells + 1, 0);
   for (int p = 0; p < slots(); ++p) {
     if (id[p] < 0) continue;
-    Index<D> cell;
-    for (int d = 0; d < D; ++d)
-      cell[d] = std::clamp(static_cast<int>((position[d][p] - grid.origin()[d]) / grid.spacing()), 0,
-                           grid.cells()[d] - 1);
-    key[p] = grid.slot(cell);
+    key[p] = grid.slot(cell_of(grid, p));
     ++start[key[p] + 1];
   }
   // First slot of each block (padded), then of each cell.

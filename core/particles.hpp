@@ -76,6 +76,8 @@ class ParticleSet {
 
   // Linear block numbers of all points. Throws NumericalError when a point is outside the grid's box.
   std::vector<int> occupied_block_numbers(const Grid<D>& grid) const;
+  // Cell that holds a point; one on an upper side of the grid, or beyond one, counts to the last cell.
+  Index<D> cell_of(const Grid<D>& grid, int p) const;
   // Put the points in order of the grid's blocks (grid.activate() has been called for all sets).
   void sort(const Grid<D>& grid);
   // Position of the point with this id in the arrays, -1 when it was taken away.

@@ -5,6 +5,7 @@
 #include "core/error.hpp"
 #include "coupling/body_shape.hpp"
 #include "coupling/initial_state.hpp"
+#include "coupling/points.hpp"
 #include "coupling/random_field.hpp"
 #include "coupling/two_layer.hpp"
 #include "coupling/world.hpp"
@@ -12,20 +13,6 @@
 
 namespace polder::coupling {
 namespace {
-
-template <int D>
-Point<D> point(const Vector3& v) {
-  Point<D> p;
-  for (int d = 0; d < D; ++d) p[d] = v[d];
-  return p;
-}
-
-template <int D>
-Vector3 vector3(const Point<D>& p) {
-  Vector3 v{};
-  for (int d = 0; d < D; ++d) v[d] = p[d];
-  return v;
-}
 
 template <int D>
 Grid<D> make_grid(const GridSpec& spec) {

@@ -256,11 +256,7 @@ void wet_points(World<D>& world) {
       if (set.id[p] < 0 || (set.wet[p] > 0 && !world.pore_water->layer) ||
           (set.suction_stress[p] == 0 && (capillary < 0 || set.state[capillary][p] == 0)))
         return;
-      Index<D> cell;
-      for (int d = 0; d < D; ++d)
-        cell[d] = std::clamp(static_cast<int>((set.position[d][p] - grid.origin()[d]) / grid.spacing()), 0,
-                             grid.cells()[d] - 1);
-      const int slot = grid.slot(cell);
+      const int slot = grid.slot(set.cell_of(grid, p));
       if (slot < 0 || !world.pore_water->cells.active(slot)) return;
       set.suction_stress[p] = 0;
       if (capillary >= 0) set.state[capillary][p] = 0;

@@ -255,16 +255,9 @@ void update_layer_cells(World<D>& world) {
     const double layer_share = std::min(1.0, soil_fill * volume / mixture) * w.porosity[i] / pores;
     layer.drag[i] = conductivity > 0 ? layer_share * pores * unit_weight / conductivity : 0.0;
   });
-  const auto cell_of = [&](const ParticleSet<D>& set, int p) {
-    Index<D> cell;
-    for (int d = 0; d < D; ++d)
-      cell[d] = std::clamp(static_cast<int>((set.position[d][p] - grid.origin()[d]) / grid.spacing()), 0,
-                           grid.cells()[d] - 1);
-    return grid.slot(cell);
-  };
   ParticleSet<D>& water = layer.fluid.points();
   parallel_for(water.slots(), [&](int p) {
-    if (water.id[p] >= 0) water.nodal_weight[p] = layer.drag[cell_of(water, p)];
+    if (water.id[p] >= 0) water.nodal_weight[p] = layer.drag[grid.slot(water.cell_of(grid, p))];
   });
   // Pressure pushes the grains of the soil that lies in water; all of that soil where it holds its water.
   for (auto& body : world.skeleton.bodies()) {
@@ -273,7 +266,7 @@ void update_layer_cells(World<D>& world) {
     soil.nodal_weight.resize(soil.slots(), 0.0);
     parallel_for(soil.slots(), [&](int p) {
       if (soil.id[p] < 0) return;
-      const int slot = cell_of(soil, p);
+      const int slot = grid.slot(soil.cell_of(grid, p));
       const double submerged =
           layer.soil_fill[slot] > 0 ? std::min(1.0, w.fill[slot] / layer.soil_fill[slot]) : 0.0;
       const double grains = soil.mass[p] / soil.density_solid / soil.volume[p];
@@ -359,11 +352,7 @@ void HeldWater<D>::give(double from, double to) {
     ParticleSet<D>& set = *body;
     for (int p = 0; p < set.slots() && !set.pore_water.empty(); ++p) {
       if (set.id[p] < 0 || set.pore_water[p] != from) continue;
-      Index<D> cell;
-      for (int d = 0; d < D; ++d)
-        cell[d] = std::clamp(static_cast<int>((set.position[d][p] - grid.origin()[d]) / grid.spacing()), 0,
-                             grid.cells()[d] - 1);
-      const int slot = grid.slot(cell);
+      const int slot = grid.slot(set.cell_of(grid, p));
       if (to == 0 || (slot >= 0 && w.cells.active(slot))) set.pore_water[p] = to;
     }
   }

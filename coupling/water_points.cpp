@@ -5,6 +5,7 @@
 
 #include "core/error.hpp"
 #include "coupling/body_shape.hpp"
+#include "coupling/points.hpp"
 #include "coupling/two_layer.hpp"
 #include "fdm/mixture_flow.hpp"
 #include "mpm/seed_particles.hpp"
@@ -14,20 +15,6 @@ namespace {
 
 constexpr double kLeastShare = 0.02;  // of a point's domain with water in it
 constexpr int kWaterSeed = 7919;      // points of water are scattered otherwise than those of the soil
-
-template <int D>
-Point<D> point(const Vector3& v) {
-  Point<D> p;
-  for (int d = 0; d < D; ++d) p[d] = v[d];
-  return p;
-}
-
-template <int D>
-Vector3 vector3(const Point<D>& p) {
-  Vector3 v{};
-  for (int d = 0; d < D; ++d) v[d] = p[d];
-  return v;
-}
 
 // Mean over a point's domain of the share of space that water takes. Domains that a surface cuts are sampled,
 // so that the volume of the water and its surface do not come in steps of whole points.

@@ -27,14 +27,7 @@ void FluidLayer<D>::follow_grid() {
 template <int D>
 void FluidLayer<D>::scatter() {
   scatter_state(transfer_, affine_, sums_);
-  parallel_for(grid_.blocks(), [&](int block) {
-    for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
-      const double* s = &sums_[static_cast<std::size_t>(i) * kSum];
-      double* v = &v_old_[static_cast<std::size_t>(i) * kVector];
-      const double inverse = s[0] > 0 ? 1 / s[0] : 0;
-      for (int d = 0; d < D; ++d) v[d] = s[1 + d] * inverse;
-    }
-  });
+  velocities_of(transfer_, sums_, v_old_);
 }
 
 template <int D>

@@ -93,14 +93,7 @@ void Skeleton<D>::scatter(double time) {
         if (body->mass[p] > 0) density = std::min(density, body->mass[p] / body->volume[p]);
     mass_floor_ = kMassFloor * density * std::pow(grid_.spacing(), D);
   }
-  parallel_for(grid_.blocks(), [&](int block) {
-    for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
-      const double* s = &sums_[static_cast<std::size_t>(i) * kSum];
-      double* v = &v_old_[static_cast<std::size_t>(i) * kVector];
-      const double inverse = s[0] > 0 ? 1 / s[0] : 0;
-      for (int d = 0; d < D; ++d) v[d] = s[1 + d] * inverse;
-    }
-  });
+  velocities_of(transfer_, sums_, v_old_);
 }
 
 template <int D>

@@ -1,5 +1,6 @@
 #include "mpm/transfer.hpp"
 
+#include "core/threads.hpp"
 #include "mpm/kernels/kernels.hpp"
 
 namespace polder::mpm {
@@ -8,6 +9,18 @@ template <int D>
 void scatter_state(Transfer<D>& transfer, AffineKind affine, Reals& sums) {
   POLDER_SIMD_CALL(scatter_state, transfer, affine);
   sum_tiles(transfer, Transfer<D>::kSum, sums);
+}
+
+template <int D>
+void velocities_of(const Transfer<D>& transfer, const Reals& sums, Reals& velocity) {
+  parallel_for(transfer.grid->blocks(), [&](int block) {
+    for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
+      const double* s = &sums[static_cast<std::size_t>(i) * Transfer<D>::kSum];
+      double* v = &velocity[static_cast<std::size_t>(i) * Transfer<D>::kVector];
+      const double inverse = s[0] > 0 ? 1 / s[0] : 0;
+      for (int d = 0; d < D; ++d) v[d] = s[1 + d] * inverse;
+    }
+  });
 }
 
 template <int D>
@@ -41,6 +54,7 @@ std::shared_ptr<const void> make_law_handle(int dimension, const MaterialParamet
 
 #define POLDER_INSTANTIATE(D)                                                                   \
   template void scatter_state<D>(Transfer<D>&, AffineKind, Reals&);                             \
+  template void velocities_of<D>(const Transfer<D>&, const Reals&, Reals&);                     \
   template void scatter_cells<D>(Transfer<D>&, Reals&);                                         \
   template void update_velocities<D>(Transfer<D>&, double, const Reals&, const Reals&, Reals*); \
   template MoveResult update_stress_and_move<D>(Transfer<D>&, const MoveOptions&, const Reals*, \

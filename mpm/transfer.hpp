@@ -58,6 +58,10 @@ struct Transfer {
 template <int D>
 void scatter_state(Transfer<D>& transfer, AffineKind affine, Reals& sums);
 
+// Velocities of the nodes from their mass and momentum, zero where there is none [slots * kVector].
+template <int D>
+void velocities_of(const Transfer<D>& transfer, const Reals& sums, Reals& velocity);
+
 // Particles to cells by the overlap of their domains: {V of wet soil, V of its solid, conductivity * V, mass
 // of the water in all soil} into cells [slots * kCellSum].
 template <int D>

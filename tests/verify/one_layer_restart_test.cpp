@@ -40,27 +40,6 @@ Scene scene_with_everything(const Choice& c, double duration) {
   return s;
 }
 
-struct Ended {
-  coupling::MemoryState state;
-  long steps = 0;
-  int sorts = 0;  // the points were put in order again
-};
-
-Ended run(const Scene& scene) {
-  Simulation s(scene);
-  Ended e;
-  double travelled = 1e9;
-  while (!s.finished()) {
-    s.step();
-    e.state.save(s);
-    e.sorts += e.state.numbers.at("travelled") < travelled;
-    travelled = e.state.numbers.at("travelled");
-  }
-  REQUIRE(s.stages()[0].ended_by == "equilibrium");
-  e.steps = s.steps();
-  return e;
-}
-
 // A direct and an iterative pressure solver (more than 500 cells), and both shapes.
 const std::pair<std::string, Scene> kScenes[] = {
     {"10 x 10 cells, GIMP", scene_with_everything({.courant = 0.5, .conductivity = 1e-4}, 2)},
@@ -76,7 +55,8 @@ TEST_CASE("wet soil: a run cut at any step goes on with the same bits") {
   std::mt19937 random(20);
   for (const auto& [name, scene] : kScenes) {
     CAPTURE(name);
-    const Ended whole = run(scene);
+    const Ended whole = run_whole(scene);
+    REQUIRE(whole.first_stage_ended == "equilibrium");
     MESSAGE(name << ": " << whole.steps << " steps, " << whole.sorts << " sorts, solver "
                  << std::string(Simulation(scene).pressure_solver()));
     CHECK(whole.sorts > 3);
@@ -91,11 +71,11 @@ TEST_CASE("wet soil: the same bits with 1, 2 and 4 threads") {
   for (const auto& [name, scene] : kScenes) {
     CAPTURE(name);
     set_threads(1);
-    const Ended one = run(scene);
+    const Ended one = run_whole(scene);
     for (const int n : {2, 4}) {
       CAPTURE(n);
       set_threads(n);
-      check_same_bits(run(scene).state, one.state);
+      check_same_bits(run_whole(scene).state, one.state);
     }
   }
   set_threads(1);

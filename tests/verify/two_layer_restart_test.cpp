@@ -7,33 +7,13 @@
 #include <utility>
 
 #include "core/threads.hpp"
-#include "coupling/memory_state.hpp"
+#include "tests/verify/cut_run.hpp"
 #include "tests/verify/two_layer_scenes.hpp"
 
 using namespace polder;
 using namespace polder::verify;
 
 namespace {
-
-struct Ended {
-  coupling::MemoryState state;
-  long steps = 0;
-  int sorts = 0;  // the points were put in order again
-};
-
-Ended run(const Scene& scene) {
-  Simulation s(scene);
-  Ended e;
-  double travelled = 1e9;
-  while (!s.finished()) {
-    s.step();
-    e.state.save(s);
-    e.sorts += e.state.numbers.at("travelled") < travelled;
-    travelled = e.state.numbers.at("travelled");
-  }
-  e.steps = s.steps();
-  return e;
-}
 
 Scene affine(Scene s) {
   s.numerics.water_transfer = coupling::Transfer::apic;
@@ -55,7 +35,7 @@ TEST_CASE("two layers: water comes in and leaves, and the points account for it"
   set_threads(1);
   for (const auto& [name, scene] : kScenes) {
     CAPTURE(name);
-    const Ended e = run(scene);
+    const Ended e = run_whole(scene);
     CHECK(e.state.numbers.at("water_added") > 0);
     CHECK(e.state.numbers.at("water_removed") > 0);
     CHECK(e.sorts > 2);
@@ -67,33 +47,13 @@ TEST_CASE("two layers: a run cut at any step goes on with the same bits") {
   std::mt19937 random(20);
   for (const auto& [name, scene] : kScenes) {
     CAPTURE(name);
-    const Ended whole = run(scene);
+    const Ended whole = run_whole(scene);
     MESSAGE(name << ": " << whole.steps << " steps, " << whole.sorts << " sorts, solver "
                  << std::string(Simulation(scene).pressure_solver()));
     for (int cut = 0; cut < 4; ++cut) {
       const long at = 1 + static_cast<long>(random() % (whole.steps - 1));
-      CAPTURE(at);
-      coupling::MemoryState state;
-      {
-        Simulation first(scene);
-        while (first.steps() < at) first.step();
-        state.save(first);
-      }
-      Simulation second(scene);
-      state.load(second);
-      coupling::MemoryState again;
-      again.save(second);
       // The weight of points at nodes is found anew at the beginning of each step.
-      for (const std::string& array : again.differences(state)) {
-        CAPTURE(array);
-        CHECK(array.ends_with("/nodal_weight"));
-      }
-      while (!second.finished()) second.step();
-      again.save(second);
-      const std::vector<std::string> different = again.differences(whole.state);
-      if (!different.empty()) MESSAGE("first difference: " << different.front());
-      CHECK(different.empty());
-      CHECK(second.steps() == whole.steps);
+      check_cut_run(scene, at, whole.state, whole.steps, "/nodal_weight");
     }
   }
 }
@@ -102,13 +62,11 @@ TEST_CASE("two layers: the same bits with 1, 2 and 4 threads") {
   for (const auto& [name, scene] : kScenes) {
     CAPTURE(name);
     set_threads(1);
-    const Ended one = run(scene);
+    const Ended one = run_whole(scene);
     for (const int n : {2, 4}) {
       CAPTURE(n);
       set_threads(n);
-      const std::vector<std::string> different = run(scene).state.differences(one.state);
-      if (!different.empty()) MESSAGE("first difference: " << different.front());
-      CHECK(different.empty());
+      check_same_bits(run_whole(scene).state, one.state);
     }
   }
   set_threads(1);
