@@ -27,6 +27,17 @@ void check_water_of_layer(Reader& reader) {
                  "a [[water_body]]");
 }
 
+// Points that leave through one of two tied sides would have to come in through the other.
+void check_boundaries_of_layer(Reader& reader) {
+  const Scene& scene = reader.scene;
+  for (std::size_t i = 0; i < scene.boundaries.size(); ++i) {
+    const std::string key = "boundary." + std::to_string(i + 1) + ".kind";
+    if (scene.boundaries[i].kind == coupling::Boundary::Kind::tied && !reader.failed(key))
+      reader.error(key, "\"tied\" is not in this version for formulation \"" + scene.formulation + "\"",
+                   "\"roller\", \"fixed\", \"friction\", \"free\", \"velocity\"");
+  }
+}
+
 void check_stages_of_layer(Reader& reader) {
   const Scene& scene = reader.scene;
   for (std::size_t i = 0; i < scene.stages.size(); ++i) {
@@ -55,6 +66,7 @@ void check_water_layer(Reader& reader) {
     return;
   }
   check_water_of_layer(reader);
+  check_boundaries_of_layer(reader);
   check_stages_of_layer(reader);
   for (const coupling::Material& m : scene.materials)
     if (const std::string key = "material." + m.name + ".retention"; m.retains() && !reader.failed(key))

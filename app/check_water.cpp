@@ -191,8 +191,10 @@ void check_unsaturated(Reader& reader) {
     const WaterBoundary& w = scene.water_boundaries[i];
     const std::string key = "water." + std::to_string(i + 1);
     if (unsaturated || reader.failed(key)) continue;
-    if (w.kind == Kind::flux || w.kind == Kind::rain || w.kind == Kind::evaporation ||
-        w.kind == Kind::seepage_face)
+    const bool needs_suction = w.kind == Kind::flux || w.kind == Kind::rain || w.kind == Kind::evaporation ||
+                               w.kind == Kind::seepage_face;
+    if (scene.layered() && needs_suction) continue;  // check_water_layer() says what it knows
+    if (needs_suction)
       reader.error(key + ".kind", "needs unsaturated flow, and no material has a retention curve", needed);
     else if (w.side == WaterBoundary::kOnSurface)
       reader.error(key + ".where",

@@ -170,7 +170,15 @@ double Simulation::Run<D>::quantity_of(const ParticleSet<D>& set, int p, const s
     return cell_quantity(x, "pore_pressure_interpolated");
   }
   if (q == "porosity") return 1 - set.mass[p] / (set.density_solid * set.volume[p]);
-  if (q == "saturation") return set.pore_water.empty() ? 0.0 : set.pore_water[p] / scene.water.density;
+  if (q == "saturation") {
+    const double own = set.pore_water.empty() ? 0.0 : set.pore_water[p] / scene.water.density;
+    if (!world->pore_water || !world->pore_water->layer || set.wet.empty()) return own;
+    // In two layers the pores hold what the points of water around bring, too.
+    const WaterLayer<D>& layer = *world->pore_water->layer;
+    const int slot = world->skeleton.grid().slot(set.cell_of(world->skeleton.grid(), p));
+    if (slot < 0 || !(layer.soil_fill[slot] > 0)) return own;
+    return std::max(own, std::min(1.0, world->pore_water->fill[slot] / layer.soil_fill[slot]));
+  }
   if (q == "cohesion" || q == "friction_angle") {
     const mpm::StateLayout& layout = world->layouts[set.material];
     std::vector<double> state(layout.count());
