@@ -11,7 +11,7 @@
 
 namespace polder::verify {
 
-struct Ended {
+struct WholeRun {
   coupling::MemoryState state;
   long steps = 0;
   int sorts = 0;                  // the points were put in order again
@@ -19,9 +19,9 @@ struct Ended {
 };
 
 // The whole run in one go.
-inline Ended run_whole(const coupling::Scene& scene) {
+inline WholeRun run_whole(const coupling::Scene& scene) {
   coupling::Simulation s(scene);
-  Ended e;
+  WholeRun e;
   double travelled = 1e9;
   while (!s.finished()) {
     s.step();

@@ -55,7 +55,7 @@ TEST_CASE("wet soil: a run cut at any step goes on with the same bits") {
   std::mt19937 random(20);
   for (const auto& [name, scene] : kScenes) {
     CAPTURE(name);
-    const Ended whole = run_whole(scene);
+    const WholeRun whole = run_whole(scene);
     REQUIRE(whole.first_stage_ended == "equilibrium");
     MESSAGE(name << ": " << whole.steps << " steps, " << whole.sorts << " sorts, solver "
                  << std::string(Simulation(scene).pressure_solver()));
@@ -71,7 +71,7 @@ TEST_CASE("wet soil: the same bits with 1, 2 and 4 threads") {
   for (const auto& [name, scene] : kScenes) {
     CAPTURE(name);
     set_threads(1);
-    const Ended one = run_whole(scene);
+    const WholeRun one = run_whole(scene);
     for (const int n : {2, 4}) {
       CAPTURE(n);
       set_threads(n);

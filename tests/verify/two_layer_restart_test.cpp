@@ -35,7 +35,7 @@ TEST_CASE("two layers: water comes in and leaves, and the points account for it"
   set_threads(1);
   for (const auto& [name, scene] : kScenes) {
     CAPTURE(name);
-    const Ended e = run_whole(scene);
+    const WholeRun e = run_whole(scene);
     CHECK(e.state.numbers.at("water_added") > 0);
     CHECK(e.state.numbers.at("water_removed") > 0);
     CHECK(e.sorts > 2);
@@ -47,7 +47,7 @@ TEST_CASE("two layers: a run cut at any step goes on with the same bits") {
   std::mt19937 random(20);
   for (const auto& [name, scene] : kScenes) {
     CAPTURE(name);
-    const Ended whole = run_whole(scene);
+    const WholeRun whole = run_whole(scene);
     MESSAGE(name << ": " << whole.steps << " steps, " << whole.sorts << " sorts, solver "
                  << std::string(Simulation(scene).pressure_solver()));
     for (int cut = 0; cut < 4; ++cut) {
@@ -62,7 +62,7 @@ TEST_CASE("two layers: the same bits with 1, 2 and 4 threads") {
   for (const auto& [name, scene] : kScenes) {
     CAPTURE(name);
     set_threads(1);
-    const Ended one = run_whole(scene);
+    const WholeRun one = run_whole(scene);
     for (const int n : {2, 4}) {
       CAPTURE(n);
       set_threads(n);
