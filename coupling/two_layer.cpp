@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/threads.hpp"
+#include "coupling/drag_exchange.hpp"
 #include "coupling/initial_state.hpp"
 #include "coupling/stopwatch.hpp"
 #include "fdm/mixture_flow.hpp"
@@ -13,16 +14,10 @@ namespace polder::coupling {
 namespace {
 
 constexpr int kStride = 4;
-constexpr double kNoWater = 1e-26;  // mass of a node, as a share of a cell of water, that feels no force
 constexpr double kLeastPorosity = 0.05;
 constexpr int kDriftInterval = 8;    // steps between two corrections of the water's volume
 constexpr double kDriftShare = 0.3;  // of the drift that one of them takes back
 constexpr int kWettingInterval = 8;  // steps between two looks for soil that water has reached
-
-template <int D>
-double water_floor(const World<D>& world) {
-  return kNoWater * world.scene.water.density * std::pow(world.scene.grid.cell, D);
-}
 
 // w_trial = w_old + dt (g - grad p / rho_w) of nodes with water, under the walls.
 template <int D>
@@ -39,59 +34,6 @@ void predict_water(World<D>& world, double end, double dt, const Point<D>& gravi
     }
   });
   fluid.constrain(end, dt, fluid.velocity());
-}
-
-// Exchanges drag between the trial velocities of grains and water, implicitly at each node, and finds what a
-// unit pressure gradient over the step does to both. With b = dt B / M_w, B the drag of the node's water,
-//   M_s (v - v~) = - M_w (w - w~) = dt B (w - v).
-// Where a boundary holds the grains they do not give way to the water; the reaction goes into their trial
-// velocity all the same, from where the boundary takes it, and friction feels it.
-template <int D>
-void exchange_drag(World<D>& world, double end, double dt) {
-  WaterLayer<D>& layer = *world.pore_water->layer;
-  mpm::Skeleton<D>& skeleton = world.skeleton;
-  const std::vector<std::uint8_t>& held = skeleton.boundaries().held_components();
-  const std::vector<std::uint8_t>& walled = layer.fluid.held_components();
-  const double per_density = 1 / world.scene.water.density, floor = water_floor(world);
-  Reals& trial = skeleton.v_trial();
-  Reals& held_velocity = layer.grains;
-  held_velocity = trial;
-  skeleton.boundaries().apply(end, dt, skeleton.sums(), held_velocity, false, false);
-  for (Reals* r : {&layer.water, &layer.grains_response, &layer.water_response}) r->resize(trial.size());
-  parallel_for(skeleton.grid().slots(), [&](int i) {
-    const double* s = &skeleton.sums()[static_cast<std::size_t>(i) * 8];
-    const double* f = &layer.fluid.sums()[static_cast<std::size_t>(i) * 8];
-    const double soil = s[0], water = f[0];
-    const bool has_soil = soil > skeleton.mass_floor(), has_water = water > floor;
-    const double push_soil = has_soil ? dt * s[mpm::Transfer<D>::kVolume] / soil : 0.0;
-    const double push_water = has_water ? dt * per_density : 0.0;
-    const double b = has_soil && has_water ? dt * f[mpm::FluidLayer<D>::kDrag] / water : 0.0;
-    const double whole = soil + b * (soil + water);
-    for (int d = 0; d < D; ++d) {
-      const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
-      const bool fixed = held[i] >> d & 1, wall = walled[i] >> d & 1;
-      const double v = trial[j], w = layer.fluid.velocity()[j];
-      double &rs = layer.grains_response[j], &rw = layer.water_response[j];
-      layer.water[j] = w;
-      rs = fixed ? 0.0 : push_soil;
-      rw = wall ? 0.0 : push_water;
-      if (!has_soil || !has_water) {
-        if (!has_soil) rs = rw;
-        if (!has_water) rw = rs;
-      } else if (wall) {
-        if (!fixed) trial[j] = (v + b * water / soil * w) / (1 + b * water / soil);
-      } else if (fixed) {
-        layer.water[j] = (w + b * held_velocity[j]) / (1 + b);
-        trial[j] += water / soil * (w - layer.water[j]);
-        rw = push_water / (1 + b);
-      } else {
-        trial[j] = ((1 + b) * soil * v + b * water * w) / whole;
-        layer.water[j] = ((soil + b * water) * w + b * soil * v) / whole;
-        rs = ((1 + b) * soil * push_soil + b * water * push_water) / whole;
-        rw = ((soil + b * water) * push_water + b * soil * push_soil) / whole;
-      }
-    }
-  });
 }
 
 // The mixture's velocities: a node without one of the two layers gives the other's velocity to it.
