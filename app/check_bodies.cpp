@@ -117,7 +117,7 @@ void check_random(const Body& body, std::size_t i, Reader& reader) {
   const Scene& scene = reader.scene;
   if (reader.failed(body_key(i) + ".material") || body.material >= static_cast<int>(scene.materials.size()))
     return;
-  const mpm::MaterialParameters& m = scene.materials[body.material];
+  const coupling::Material& m = scene.materials[body.material];
   for (std::size_t r = 0; r < body.random.size(); ++r) {
     const coupling::RandomProperty& random = body.random[r];
     const std::string key = body_key(i) + ".random." + std::to_string(r + 1) + ".property";
@@ -139,7 +139,7 @@ void check_random(const Body& body, std::size_t i, Reader& reader) {
       reader.error(key, "material \"" + m.name + "\" has no undrained strength",
                    "model = \"von-mises\" or \"tresca\"");
     else if (random.property == Property::conductivity &&
-             (m.hydraulic_conductivity == 0 || scene.formulation == "dry"))
+             ((m.hydraulic_conductivity == 0 && !m.drag_of_grains()) || scene.formulation == "dry"))
       reader.error(key, "no water flows through material \"" + m.name + "\"",
                    "a conductivity greater than 0 and a formulation with water");
   }

@@ -53,11 +53,38 @@ void check_stages_of_layer(Reader& reader) {
   }
 }
 
+// Laws other than Darcy's need the velocity of water points. Conductivities that scatter are Darcy's.
+void check_drag(Reader& reader) {
+  const Scene& scene = reader.scene;
+  if (!coupling::find_formulation(scene.formulation) || scene.formulation == "dry") return;
+  for (const coupling::Material& m : scene.materials) {
+    const std::string key = "material." + m.name + ".drag_law";
+    if (m.drag_law == coupling::DragLaw::darcy || m.porosity <= 0 || reader.failed(key)) continue;
+    if (!scene.layered())
+      reader.error(key, "formulation \"" + scene.formulation + "\" has Darcy's drag only",
+                   "\"darcy\"; or formulation = \"two-layer\"");
+  }
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const auto material = static_cast<std::size_t>(scene.bodies[i].material);
+    if (material >= scene.materials.size()) continue;
+    for (std::size_t k = 0; k < scene.bodies[i].random.size(); ++k) {
+      const std::string key =
+          "body." + std::to_string(i + 1) + ".random." + std::to_string(k + 1) + ".property";
+      if (scene.materials[material].drag_law != coupling::DragLaw::darcy && !reader.failed(key) &&
+          scene.bodies[i].random[k].property == coupling::RandomProperty::Property::conductivity)
+        reader.error(key,
+                     "the drag law of material \"" + scene.materials[material].name + "\" is not Darcy's",
+                     "another property; or drag_law = \"darcy\"");
+    }
+  }
+}
+
 }  // namespace
 
 void check_water_layer(Reader& reader) {
   const Scene& scene = reader.scene;
   if (reader.failed("formulation")) return;
+  check_drag(reader);
   if (!scene.layered()) {
     if (!scene.water_bodies.empty() && !reader.failed("water_body"))
       reader.error("water_body.1",

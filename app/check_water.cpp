@@ -39,8 +39,8 @@ void check_materials(Reader& reader) {
   for (const auto& m : scene.materials) {
     const std::string key = "material." + m.name;
     any = any || m.porosity > 0;
-    if (m.porosity > 0 && m.hydraulic_conductivity == 0 && !reader.failed(key + ".conductivity") &&
-        !reader.failed(key + ".porosity"))
+    if (m.porosity > 0 && m.hydraulic_conductivity == 0 && !m.drag_of_grains() &&
+        !reader.failed(key + ".conductivity") && !reader.failed(key + ".porosity"))
       reader.error(
           key + ".conductivity",
           reader.given(key + ".conductivity")

@@ -10,6 +10,7 @@
 namespace polder::app {
 
 using coupling::BishopFactor;
+using coupling::DragLaw;
 using coupling::Material;
 using coupling::Scene;
 using coupling::WaterSpec;
@@ -168,13 +169,39 @@ const Table<Material>& material_keys() {
     t.add("softening_modulus", number(dimension::kPressure, {.max = 0}), &M::softening_modulus,
           "Change of the strength with accumulated plastic deviatoric strain; 0: perfectly plastic.")
         .only_with("model", with_undrained, undrained);
+    const auto permeable = [](const M& m) { return !m.drag_of_grains(); };
+    const auto granular = [](const M& m) { return m.drag_of_grains(); };
+    const std::string with_grains = "drag_law = \"ergun\", \"gidaspow\" or \"di-felice\"";
+    t.add("drag_law",
+          choice<DragLaw>({{"darcy", DragLaw::darcy},
+                           {"forchheimer", DragLaw::forchheimer},
+                           {"ergun", DragLaw::ergun},
+                           {"gidaspow", DragLaw::gidaspow},
+                           {"di-felice", DragLaw::di_felice}}),
+          &M::drag_law,
+          "Drag between grains and water: Darcy's law; Forchheimer's, with a part that grows with velocity; "
+          "of beds of grains (ergun), of beds and suspensions (gidaspow, di-felice).");
     t.add("conductivity", conductivity(), &M::hydraulic_conductivity,
           "Saturated hydraulic conductivity k, or intrinsic permeability kappa, k = kappa density 9.81 / "
-          "viscosity.");
+          "viscosity.")
+        .only_with("drag_law", "drag_law = \"darcy\" or \"forchheimer\"", permeable);
+    t.add("forchheimer", number(Dimension{0, -2, 2}, kPositive), &M::forchheimer,
+          "Coefficient b of the hydraulic gradient q / k + b q^2 at a specific discharge q.")
+        .without_default()
+        .required()
+        .only_with("drag_law", "drag_law = \"forchheimer\"",
+                   [](const M& m) { return m.drag_law == DragLaw::forchheimer; });
+    t.add("grain_diameter", number(dimension::kLength, kPositive), &M::grain_diameter,
+          "Diameter of the grains; with the water's viscosity and density it sets their drag.")
+        .without_default()
+        .required()
+        .only_with("drag_law", with_grains, granular);
     t.add("anisotropy", numbers(dimension::kNone, kPositive), &M::anisotropy,
           "Factors on the conductivity along the axes of the grid, e.g. [1, 0.1]; without it 1.");
     t.add("kozeny_carman", boolean(), &M::kozeny_carman,
-          "true: the conductivity follows the porosity, as n^3 / (1 - n)^2.");
+          "true: the conductivity follows the porosity, as n^3 / (1 - n)^2.")
+        .only_with("drag_law", "drag_law = \"darcy\"",
+                   [](const M& m) { return m.drag_law == DragLaw::darcy; });
     const auto retains = [](const M& m) { return m.retains(); };
     t.add("retention", retention(), &M::retention,
           "Degree of saturation and relative conductivity against suction. A case with a retention curve "

@@ -4,6 +4,7 @@
 
 #include "core/error.hpp"
 #include "coupling/body_shape.hpp"
+#include "coupling/drag_exchange.hpp"
 #include "coupling/initial_state.hpp"
 #include "coupling/points.hpp"
 #include "coupling/random_field.hpp"
@@ -238,9 +239,12 @@ template <int D>
 World<D>::World(Scene s, Grid<D> grid, const mpm::SkeletonOptions& options, mpm::BoundarySet<D> boundaries)
     : scene(std::move(s)), skeleton(std::move(grid), options, std::move(boundaries)) {
   mark_scatter(scene);
+  for (int d = 0; d < D; ++d) gravity[d] = scene.gravity[d];
+  for (Material& m : scene.materials)
+    if (m.drag_of_grains() && m.porosity > 0)
+      m.hydraulic_conductivity = apparent_conductivity(m, drag_fluid(*this), m.porosity, 0);
   materials = scene.skeleton_materials();
   for (const mpm::MaterialParameters& m : materials) layouts.push_back(mpm::state_layout(m, D));
-  for (int d = 0; d < D; ++d) gravity[d] = scene.gravity[d];
 }
 
 template <int D>

@@ -1,11 +1,15 @@
 #include "coupling/drag_exchange.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/threads.hpp"
 
 namespace polder::coupling {
 namespace {
 
 constexpr int kStride = 4;
+constexpr double kLeastPorosity = 0.05;
 
 }  // namespace
 
@@ -57,6 +61,75 @@ void exchange_drag(World<D>& world, double end, double dt) {
   });
 }
 
+namespace {
+
+// Velocity of the water relative to the grains around a point, from the nodes that have both [m/s].
+template <int D>
+double relative_speed(const World<D>& world, const ParticleSet<D>& set, int p) {
+  const Grid<D>& grid = world.skeleton.grid();
+  const mpm::FluidLayer<D>& fluid = world.pore_water->layer->fluid;
+  const Reals& grains = world.skeleton.v_new();
+  const double floor = water_floor(world);
+  Index<D> base;
+  double share[D];
+  for (int d = 0; d < D; ++d) {
+    const double x = (set.position[d][p] - grid.origin()[d]) / grid.spacing();
+    base[d] = std::clamp(static_cast<int>(std::floor(x)), 0, grid.cells()[d] - 1);
+    share[d] = x - base[d];
+  }
+  Point<D> sum{};
+  double whole = 0;
+  for (int k = 0; k < ipow(2, D); ++k) {
+    Index<D> node = base;
+    double weight = 1;
+    for (int d = 0; d < D; ++d) {
+      const int one = k >> d & 1;
+      node[d] += one;
+      weight *= one ? share[d] : 1 - share[d];
+    }
+    const int slot = grid.slot(node);
+    if (slot < 0 ||
+        !(world.skeleton.sums()[static_cast<std::size_t>(slot) * 8] > world.skeleton.mass_floor()) ||
+        !(fluid.sums()[static_cast<std::size_t>(slot) * 8] > floor))
+      continue;
+    whole += weight;
+    for (int d = 0; d < D; ++d) {
+      const std::size_t j = static_cast<std::size_t>(slot) * kStride + d;
+      sum[d] += weight * (fluid.velocity()[j] - grains[j]);
+    }
+  }
+  double square = 0;
+  for (int d = 0; d < D; ++d) square += sum[d] * sum[d];
+  return whole > 0 ? std::sqrt(square) / whole : 0.0;
+}
+
+}  // namespace
+
+template <int D>
+void follow_flow(World<D>& world) {
+  const PoreWater<D>& w = *world.pore_water;
+  const Grid<D>& grid = world.skeleton.grid();
+  const DragFluid fluid = drag_fluid(world);
+  for (auto& body : world.skeleton.bodies()) {
+    ParticleSet<D>& set = *body;
+    const Material& material = world.scene.materials[set.material];
+    if (set.conductivity.empty() || material.drag_law == DragLaw::darcy) continue;
+    parallel_for(set.slots(), [&](int p) {
+      if (set.id[p] < 0) return;
+      const double porosity =
+          std::clamp(1 - set.mass[p] / (set.density_solid * set.volume[p]), kLeastPorosity, 1.0);
+      const int slot = grid.slot(set.cell_of(grid, p));
+      // Beside water that stands alone in the cell the soil's own water is faster, by the ratio of
+      // porosities.
+      const double faster = slot < 0 ? 1.0 : std::max(1.0, w.porosity[slot] / porosity);
+      set.conductivity[p] =
+          apparent_conductivity(material, fluid, porosity, faster * relative_speed(world, set, p));
+    });
+  }
+}
+
+template void follow_flow<2>(World<2>&);
+template void follow_flow<3>(World<3>&);
 template void exchange_drag<2>(World<2>&, double, double);
 template void exchange_drag<3>(World<3>&, double, double);
 

@@ -9,6 +9,7 @@
 
 #include <cmath>
 
+#include "coupling/drag_law.hpp"
 #include "coupling/world.hpp"
 
 namespace polder::coupling {
@@ -26,5 +27,16 @@ double water_floor(const World<D>& world) {
 // where the boundary takes it, and friction feels it. end: time at the end of the step [s].
 template <int D>
 void exchange_drag(World<D>& world, double end, double dt);
+
+template <int D>
+DragFluid drag_fluid(const World<D>& world) {
+  return {world.scene.water.density, world.scene.water.viscosity, world.unit_weight()};
+}
+
+// Conductivity of the soil's points under drag laws other than Darcy's, from their porosity and the velocity
+// of the water relative to them at the end of the step that has just been made: the next one takes it as
+// given, so that drag stays linear in the velocities that it changes. Part of a checkpoint as it stands.
+template <int D>
+void follow_flow(World<D>& world);
 
 }  // namespace polder::coupling

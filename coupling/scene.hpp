@@ -100,6 +100,9 @@ struct NumericsSpec {
 // soil dries), the whole one, or nothing of it.
 enum class BishopFactor { saturation, effective_saturation, none };
 
+// What water that moves relative to the grains feels, see drag_law.hpp.
+enum class DragLaw { darcy, forchheimer, ergun, gidaspow, di_felice };
+
 // The skeleton's law (mpm) and what water finds in its pores (fdm).
 struct Material : mpm::MaterialParameters {
   Material() = default;
@@ -108,8 +111,13 @@ struct Material : mpm::MaterialParameters {
   fdm::Retention retention;        // saturated at any pressure unless given
   std::vector<double> anisotropy;  // factors on the conductivity along the axes; empty: 1
   bool kozeny_carman = false;      // conductivity follows the porosity, n^3 / (1 - n)^2
+  DragLaw drag_law = DragLaw::darcy;
+  double forchheimer = 0;     // b in i = q / k + b q^2 [s2/m2]
+  double grain_diameter = 0;  // of drag laws that know grains [m]
   BishopFactor bishop = BishopFactor::effective_saturation;
   double capillary_suction = 0;  // suction at which the capillary cohesion is all there [Pa]
+  // Laws that know grains find the conductivity themselves.
+  bool drag_of_grains() const { return drag_law != DragLaw::darcy && drag_law != DragLaw::forchheimer; }
   bool retains() const { return retention.model != fdm::Retention::Model::saturated; }
   bool operator==(const Material&) const = default;
 };
@@ -355,7 +363,8 @@ struct Scene {
   int dimension() const { return grid.space == Space::three_d ? 3 : 2; }
   // Some material has a retention curve: water in cells is computed as unsaturated flow.
   bool unsaturated() const;
-  bool layered() const;        // water has points of its own
+  bool layered() const;            // water has points of its own
+  bool drag_follows_flow() const;  // some drag law depends on more than the soil
   bool kozeny_carman() const;  // conductivities follow the porosity, those of all porous materials or of none
   std::vector<mpm::MaterialParameters> skeleton_materials() const;
   bool operator==(const Scene&) const = default;

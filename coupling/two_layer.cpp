@@ -262,6 +262,7 @@ mpm::MoveResult step_two_layer(World<D>& world, const StepInput& in, long step) 
   const mpm::MoveResult flowed = layer.fluid.gather(in.time, in.dt);
   skeleton.add_travel(std::max(0.0, flowed.largest_displacement - moved.largest_displacement));
   moved.largest_speed = std::max(moved.largest_speed, flowed.largest_speed);
+  if (world.scene.drag_follows_flow()) follow_flow(world);
   pass_open_sides(world, in.dt);
   if (step % kDriftInterval == 0) {
     Stopwatch watch(w.wall_seconds);
