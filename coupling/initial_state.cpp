@@ -12,6 +12,9 @@
 namespace polder::coupling {
 namespace {
 
+constexpr double kNowhere = -1e300;  // a level below everything
+constexpr double kOnEdge = 1e-6;     // cells that a place may lie beside a part of the surface
+
 template <int D>
 Vector3 at(const ParticleSet<D>& set, int p) {
   Vector3 v{};
@@ -68,18 +71,45 @@ double overburden(const Scene& scene, const std::vector<BodyShape>& shapes,
   return stress;
 }
 
-// Top of the saturated soil above x: where a hydrostatic pore pressure is zero.
+// Highest soil over x.
+double ground_over(const std::vector<BodyShape>& shapes, const Vector3& x) {
+  double top = kNowhere;
+  for (const BodyShape& shape : shapes)
+    for (const auto& [low, high] : shape.vertical_intervals(x)) top = std::max(top, high);
+  return top;
+}
+
+// Level at the start of the open water that stands on the soil over x, whose surface lies at `ground` there:
+// the level outside, or that of a head or a pressure on the soil's surface.
+double pond_level(const Scene& scene, Vector3 x, double ground, double unit_weight) {
+  double level = scene.water.outside_level ? scene.water.outside_level->at(0) : kNowhere;
+  const std::size_t dimension = static_cast<std::size_t>(scene.dimension());
+  x[dimension - 1] = ground;
+  for (const WaterBoundary& w : scene.water_boundaries) {
+    using Kind = WaterBoundary::Kind;
+    if (w.side != WaterBoundary::kOnSurface || (w.kind != Kind::head && w.kind != Kind::pressure)) continue;
+    bool covers = true;
+    for (std::size_t d = 0; w.from && w.to && d < dimension; ++d)
+      covers = covers && x[d] >= std::min((*w.from)[d], (*w.to)[d]) - kOnEdge * scene.grid.cell &&
+               x[d] <= std::max((*w.from)[d], (*w.to)[d]) + kOnEdge * scene.grid.cell;
+    if (!covers) continue;
+    const double value = w.value.at(0);
+    level = std::max(level, w.kind == Kind::head ? value : ground + value / unit_weight);
+  }
+  return level > ground ? level : kNowhere;
+}
+
+// Top of the saturated soil above x, or of the open water on it: where a hydrostatic pore pressure is zero.
 double pressure_datum(const Scene& scene, const std::vector<BodyShape>& shapes,
-                      const std::vector<BodyShape>& waters, const Vector3& x) {
-  double top = -1e300;
+                      const std::vector<BodyShape>& waters, const Vector3& x, double unit_weight) {
+  double top = kNowhere;
   for (std::size_t b = 0; b < shapes.size(); ++b)
     if (scene.materials[scene.bodies[b].material].porosity > 0)
       for (const auto& [low, high] : shapes[b].vertical_intervals(x)) top = std::max(top, high);
   if (!scene.water.phreatic.empty()) top = std::min(top, water_table(scene.water, x));
   for (const BodyShape& water : waters)
     for (const auto& [low, high] : water.vertical_intervals(x)) top = std::max(top, high);
-  if (scene.water.outside_level) top = std::max(top, scene.water.outside_level->at(0));
-  return top;
+  return std::max(top, pond_level(scene, x, ground_over(shapes, x), unit_weight));
 }
 
 double k0_at(const InitialStress& s, double depth) {
@@ -147,6 +177,7 @@ void set_initial_stress(World<D>& world) {
       return slot >= 0 && unsaturated->cells.active(slot) ? unsaturated->unsaturated->field.saturation()[slot]
                                                           : 1.0;
     };
+  const double unit_weight = world.unit_weight();
   constexpr int kUp = D - 1, kVertical = D == 2 ? 1 : 2;  // component of the vertical stress
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const InitialStress& initial = scene.bodies[b].stress;
@@ -163,11 +194,13 @@ void set_initial_stress(World<D>& world) {
         if (unsaturated != nullptr)
           pressure = set.wet.empty() ? 0.0 : pushing_pressure_at(world, set, p);
         else if (full)
-          pressure = std::max(0.0, world.unit_weight() * (pressure_datum(scene, shapes, waters, x) - x[kUp]));
+          pressure =
+              std::max(0.0, unit_weight * (pressure_datum(scene, shapes, waters, x, unit_weight) - x[kUp]));
         double total = overburden(scene, shapes, waters, x, kUp, wet, saturation);
-        if (full && scene.water.outside_level)  // open water standing on the surface
-          total += world.unit_weight() * std::max(0.0, scene.water.outside_level->at(0) -
-                                                           shapes[b].vertical_intervals(x).back().second);
+        if (wet) {  // open water standing on the surface
+          const double ground = ground_over(shapes, x);
+          total += unit_weight * std::max(0.0, pond_level(scene, x, ground, unit_weight) - ground);
+        }
         const double vertical = std::max(0.0, total - pressure);
         const double horizontal = k0_at(initial, shapes[b].upper()[kUp] - x[kUp]) * vertical;
         const double suction = set.suction_stress.empty() ? 0.0 : set.suction_stress[p];
@@ -184,6 +217,7 @@ void set_cell_pressure(const World<D>& world, Reals& p) {
   const PoreWater<D>& water = *world.pore_water;
   const Scene& scene = world.scene;
   const bool suction = water.unsaturated != nullptr;
+  const double unit_weight = world.unit_weight();
   switch (scene.water.initial) {
     case WaterSpec::Initial::zero:
       std::fill(p.begin(), p.end(), 0.0);
@@ -203,7 +237,7 @@ void set_cell_pressure(const World<D>& world, Reals& p) {
         const Point<D> c = water.cells.centre(cell.index);
         for (int d = 0; d < D; ++d) x[d] = c[d];
         const double hydrostatic =
-            world.unit_weight() * (pressure_datum(scene, shapes, waters, x) - x[D - 1]);
+            unit_weight * (pressure_datum(scene, shapes, waters, x, unit_weight) - x[D - 1]);
         p[cell.slot] = suction ? hydrostatic : std::max(0.0, hydrostatic);
       }
       break;

@@ -144,6 +144,8 @@ void carry_water(World<D>& world) {
   else
     w.pressure.carry();
   if (w.layer && !w.layer->owed.empty()) world.skeleton.grid().carry(w.layer->owed);
+  for (Reals* r : {&w.feedback.compressibility, &w.feedback.foreseen, &w.feedback.owed})
+    if (!r->empty()) world.skeleton.grid().carry(*r);
 }
 
 template <int D>

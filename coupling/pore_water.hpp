@@ -63,6 +63,15 @@ struct WaterLayer {
   double added = 0, removed = 0;  // volume of the points that came and went through open sides [m3]
 };
 
+// What the soil's change of volume asks of the water in quasi-static stages (volume_feedback.hpp). Cells
+// (slots); empty in other stages.
+struct VolumeFeedback {
+  Reals compressibility;  // of the skeleton, that the flow foresees [1/Pa]
+  Reals foreseen;         // water that went into so foreseen expansion since equilibrium was last sought [m3]
+  Reals owed;             // water that pores which have opened beyond that still take from the cell [m3]
+  Reals rate;             // work space of the active cells [m3/s]
+};
+
 template <int D>
 struct PoreWater {
   PoreWater(const Grid<D>& grid, Space space, const fdm::WaterProperties<D>& properties)
@@ -80,7 +89,8 @@ struct PoreWater {
   std::uint64_t sealed_revision = 0;  // of the cells whose nodes the boundaries know as sealed
   double wall_seconds = 0;            // spent on the water's part of the steps
   double outflow = 0;                 // water that has left by Darcy flow [m3]
-  double storage = 0;                 // taken up by compression of water and (rigid) skeleton [m3]
+  double storage = 0;  // taken up by compression of water and (rigid) skeleton, less what is owed [m3]
+  VolumeFeedback feedback;
   // Pressure from the bulk modulus of the water, explicitly (explicit_water.hpp), instead of by projection.
   bool compressible = false;
   Reals specific_volume;                 // of the mixture in the cells, 1 / rho [m3/kg]

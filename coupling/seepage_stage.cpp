@@ -19,6 +19,7 @@
 #include "coupling/simulation_run.hpp"
 #include "coupling/stopwatch.hpp"
 #include "coupling/unsaturated.hpp"
+#include "coupling/volume_feedback.hpp"
 
 namespace polder::coupling {
 namespace {
@@ -33,24 +34,24 @@ constexpr double kSmallestShare = 1e-10;  // of the stage's duration
 constexpr double kFirstShare = 1e-5, kLargestShare = 1e-2;
 constexpr double kRelaxShare = 0.02;  // of the hydrostatic pressure over the height of the soil
 
-// One step of water through a saturated scene at rest.
+// One step of water through a saturated scene at rest, with what the soil's change of volume takes.
 template <int D>
-void flow_saturated(World<D>& world, double dt) {
+void flow_saturated(World<D>& world, double dt, const Reals& withdrawal) {
   PoreWater<D>& w = *world.pore_water;
-  const std::size_t slots = world.skeleton.grid().slots();
-  w.correction.assign(slots * 4, 0.0);
-  w.mobility.assign(slots, 0.0);
+  if (w.cells.count() == 0) return;
+  const Reals at_rest(w.cells.interior_faces().size() + w.cells.boundary_faces().size(), 0.0);
+  const Reals nothing(static_cast<std::size_t>(w.cells.count()), 0.0);
   fdm::PressureStep p;
   p.dt = dt;
-  p.velocity = w.correction;
-  p.mobility = w.mobility;
+  p.divergence = withdrawal.empty() ? nothing : withdrawal;
+  p.face_mobility = at_rest;
   p.porosity = w.porosity;
   p.darcy_mobility = w.darcy_mobility;
+  p.skeleton_compressibility = w.feedback.compressibility;
   p.rhie_chow = 0;
   w.pressure.solve(p);
   w.outflow += dt * w.pressure.discharge().total();
   w.storage += dt * w.pressure.balance().storage;
-  w.correction.clear();
 }
 
 }  // namespace
@@ -87,15 +88,23 @@ double Simulation::Run<D>::flow(double left) {
     reason = whole ? "iterations of the water" : "end of stage or time of an expectation";
     update_water_cells(*world, time + step_size);  // keeps its own time
     Stopwatch watch(w.wall_seconds);
+    const bool follows = spec.mode == Stage::Mode::quasi_static;
+    const Reals before = follows ? w.pore_pressure() : Reals();
     if (!w.unsaturated) {
-      flow_saturated(*world, step_size);
+      flow_saturated(*world, step_size, follows ? withdrawal(*world, step_size) : Reals());
+      if (follows) settle_withdrawal(*world, step_size, before);
       water_step = std::min(largest, growth * water_step);
       return step_size;
     }
     FlowInput in;
     in.dt = step_size;
+    if (follows) {
+      in.skeleton_compressibility = w.feedback.compressibility;
+      in.withdrawal = withdrawal(*world, step_size);
+    }
     const fdm::StepReport report = flow_unsaturated(*world, in);
     if (report.converged) {
+      if (follows) settle_withdrawal(*world, step_size, before);
       if (report.iterations <= easy && whole) water_step = std::min(largest, growth * water_step);
       if (report.iterations >= kHard && !report.lagged) water_step = kShrink * step_size;
       return step_size;
@@ -133,6 +142,7 @@ void Simulation::Run<D>::begin_water_stage() {
     for (Reals& c : body->affine) std::fill(c.begin(), c.end(), 0.0);
   }
   audit->rebase(*world);
+  if (present().mode == Stage::Mode::quasi_static) begin_feedback(*world);
 }
 
 template <int D>
@@ -190,7 +200,7 @@ bool Simulation::Run<D>::follow() {
                        ? spec.relax_change
                        : kRelaxShare * world->unit_weight() * (t.height - scene.grid.origin[D - 1]);
   }
-  const double water_before = audit->totals(*world).water_volume;
+  const std::vector<Reals> volumes = point_volumes(*world);
   MemoryState rest;
   rest.save(*this);
   RelaxationOptions options;
@@ -226,8 +236,8 @@ bool Simulation::Run<D>::follow() {
   if (world->skeleton.sort()) carry_water(*world);
   update_water_cells(*world, time);
   if (w.unsaturated) update_suction(*world);
-  // Pores that open or close on the way to equilibrium take or give water without account of it.
-  const double taken = audit->totals(*world).water_volume - water_before;
+  // Pores that have opened or closed take or give water: the cells' in the next step, where there are any.
+  const double taken = charge_volume(*world, volumes);
   initial_water_volume += taken;
   relaxation_water += taken;
   relaxed_pressure = w.pore_pressure();

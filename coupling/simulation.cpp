@@ -15,6 +15,7 @@
 #include "coupling/stopwatch.hpp"
 #include "coupling/strength_reduction.hpp"
 #include "coupling/two_layer.hpp"
+#include "coupling/volume_feedback.hpp"
 
 namespace polder::coupling {
 namespace {
@@ -228,6 +229,12 @@ void Simulation::Run<D>::end_stage(const std::string& by) {
       for (Reals& c : set.affine) std::fill(c.begin(), c.end(), 0.0);
   }
   if (ended.reset_velocity) audit->rebase(*world);
+  const bool follows_on = stage + 1 < static_cast<int>(scene.stages.size()) &&
+                          scene.stages[stage + 1].mode == Stage::Mode::quasi_static;
+  if (world->pore_water && !follows_on) {  // what is still owed goes without account
+    const double left = end_feedback(*world);
+    initial_water_volume += left, relaxation_water += left;
+  }
   if (world->pore_water && !ended.water_flows) {
     // Pressure was held, so pores opened and closed without any account of the water: the balance starts
     // anew.
@@ -326,6 +333,9 @@ void Simulation::Run<D>::visit_water(StateVisitor& v) {
       unsaturated ? unsaturated->field.pressure_cells() : water.pressure.pressure_cells();
   v.reals("pore_pressure", pressure), v.integers("pressure_cells", cells);
   v.number("outflow", water.outflow), v.number("storage", water.storage);
+  VolumeFeedback feedback = water.feedback;
+  v.reals("feedback_compressibility", feedback.compressibility);
+  v.reals("feedback_foreseen", feedback.foreseen), v.reals("feedback_owed", feedback.owed);
   if (water.compressible) {
     std::int64_t darcy = water.explicit_limit.darcy;
     v.number("explicit_limit", water.explicit_limit.dt), v.count("explicit_limit_darcy", darcy);
@@ -340,6 +350,7 @@ void Simulation::Run<D>::visit_water(StateVisitor& v) {
   if (!v.reading()) return;
   carry_water(*world);
   if (water.layer) water.layer->owed = owed;  // in the order of the slots already
+  water.feedback = feedback;                  // likewise
   if (unsaturated) {
     // The cells follow the points when the next step begins, as they would have.
     unsaturated->field.restore(pressure, saturation, cells);

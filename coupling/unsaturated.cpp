@@ -6,6 +6,7 @@
 #include "core/error.hpp"
 #include "core/threads.hpp"
 #include "coupling/between_centres.hpp"
+#include "coupling/cell_overlap.hpp"
 #include "coupling/initial_state.hpp"
 
 namespace polder::coupling {
@@ -17,43 +18,6 @@ constexpr double kMotionFactor = 100;
 constexpr double kNoPoints = -1;
 constexpr double kFull = 1 - 1e-9;           // saturation beyond which suction is not looked for
 constexpr double kFirstSteadyStep = 1000.0;  // [s]
-
-// The cells that a point's domain overlaps, at most two along each axis, and its share in each. The same
-// shares as those of mpm::scatter_cells.
-template <int D>
-struct Overlap {
-  int slot[ipow(2, D)];
-  double share[ipow(2, D)];
-};
-
-template <int D>
-Overlap<D> overlap_of(const Grid<D>& grid, const ParticleSet<D>& set, int p) {
-  int cell[D];
-  double lower[D];
-  for (int d = 0; d < D; ++d) {
-    const double x = (set.position[d][p] - grid.origin()[d]) / grid.spacing();
-    const double l = std::min(set.half_size[d][p] / grid.spacing(), 0.5);
-    cell[d] = static_cast<int>(std::floor(x - l));
-    lower[d] = l > 0 ? std::clamp((cell[d] + 1 - (x - l)) / (2 * l), 0.0, 1.0) : 1.0;
-    if (cell[d] < 0) cell[d] = 0, lower[d] = 1.0;
-    if (cell[d] > grid.cells()[d] - 2) {
-      if (cell[d] > grid.cells()[d] - 1) cell[d] = grid.cells()[d] - 1;
-      lower[d] = 1.0;
-    }
-  }
-  Overlap<D> o;
-  for (int k = 0; k < ipow(2, D); ++k) {
-    Index<D> index;
-    o.share[k] = 1;
-    for (int d = 0; d < D; ++d) {
-      const int upper = k >> d & 1;
-      index[d] = std::min(cell[d] + upper, grid.cells()[d] - 1);
-      o.share[k] *= upper ? 1 - lower[d] : lower[d];
-    }
-    o.slot[k] = o.share[k] > 0 ? grid.slot(index) : -1;
-  }
-  return o;
-}
 
 template <int D>
 Point<D> position_of(const ParticleSet<D>& set, int p) {
@@ -374,7 +338,11 @@ template <int D>
 fdm::StepReport flow_unsaturated(World<D>& world, const FlowInput& in) {
   UnsaturatedWater<D>& u = *world.pore_water->unsaturated;
   fdm::UnsaturatedStep step = moving_step(world, in);
-  if (in.velocity.empty()) step.skeleton_compressibility = compressibility(world);
+  if (!in.skeleton_compressibility.empty())
+    step.skeleton_compressibility = in.skeleton_compressibility;
+  else if (in.velocity.empty())
+    step.skeleton_compressibility = compressibility(world);
+  step.withdrawal = in.withdrawal;
   u.change = u.field.saturation();
   u.field.set_tolerance(world.scene.numerics.solver_tolerance * (in.velocity.empty() ? 1 : kMotionFactor));
   const fdm::StepReport report = u.field.solve(step);

@@ -36,6 +36,8 @@ void set_unsaturated_state(World<D>& world);
 struct FlowInput {
   double dt = 0;  // [s]
   std::span<const double> velocity = {}, mobility = {}, pressure_gradient = {};
+  // Of a resting skeleton in a quasi-static stage (volume_feedback.hpp); without them it is held in plan.
+  std::span<const double> skeleton_compressibility = {}, withdrawal = {};
 };
 template <int D>
 fdm::StepReport flow_unsaturated(World<D>& world, const FlowInput& in);

@@ -299,6 +299,8 @@ SolveReport PressureField<D>::solve(const PressureStep& step) {
     require_current(std::min(step.velocity.size() / kStride, step.mobility.size()));
   if (!step.pressure_gradient.empty() && step.pressure_gradient.size() < slots * kStride)
     throw std::logic_error("PressureField: the pressure gradient does not cover the grid");
+  if (!step.skeleton_compressibility.empty() && step.skeleton_compressibility.size() < slots)
+    throw std::logic_error("PressureField: the compressibility does not cover the grid");
   if (!(step.dt > 0)) throw std::logic_error("PressureField: the time step must be positive");
   const auto cells = cells_.cells();
   const auto boundary = cells_.boundary_faces();
@@ -308,7 +310,9 @@ SolveReport PressureField<D>::solve(const PressureStep& step) {
   face_terms(step, true);
   for_each(cells_.count(), [&](int c) {
     divergence_[c] = mixture ? step.divergence[c] : cell_outflow<D>(cells[c], step.velocity);
-    storage_[c] = step.porosity[cells[c].slot] / water_.bulk_modulus * cells[c].volume / step.dt;
+    const int slot = cells[c].slot;
+    const double skeleton = step.skeleton_compressibility.empty() ? 0 : step.skeleton_compressibility[slot];
+    storage_[c] = (step.porosity[slot] / water_.bulk_modulus + skeleton) * cells[c].volume / step.dt;
   });
   const SolveReport report = solve_increment();
 

@@ -4,6 +4,7 @@
 // Mass balance of water and (incompressible) grains over an active cell of volume V, with the inertia of the
 // water relative to the skeleton neglected:
 //   (n / Kw) V dp/dt + integral of div v + sum_f A_f q_f = 0,   q = -(k / gamma_w) (grad p - rho_w g).
+// Where the skeleton rests its compressibility may be added to n / Kw.
 // With v = v* - mobility grad dp at the faces (incremental pressure correction: Van Kan 1986, SIAM J. Sci.
 // Stat. Comput. 7), a step solves for dp = p^{n+1} - p^n
 //   (n / Kw) V/dt dp_c + sum_f A_f/d_f [ Lam_f (1 + chi*) + kappa_f ] (dp_c - dp_e)
@@ -57,6 +58,7 @@ struct PressureStep {
   // ones first [m3 s/kg].
   std::span<const double> divergence = {};
   std::span<const double> face_mobility = {};
+  std::span<const double> skeleton_compressibility = {};  // of the cells [1/Pa]; empty: 0
 };
 
 // Water leaving the soil through ... [m3/s]
@@ -70,13 +72,14 @@ struct Discharge {
 
 // Rates of change summed over all active cells [m3/s]; their sum is the defect. Interior fluxes cancel.
 struct WaterBalance {
-  double storage = 0;   // compression of the water, n / Kw dp/dt
+  double storage = 0;   // compression of the water and, where it is given, the skeleton, (n / Kw + c_s) dp/dt
   double skeleton = 0;  // volume change of the skeleton, D v
   double projection =
       0;  // volume passing surfaces and boundaries with the correction of v* (0 if v is corrected)
-  double outflow = 0;    // Darcy discharge
-  double magnitude = 0;  // sum of the absolute values of the cells' terms, to judge the defect by
-  double defect() const { return storage + skeleton + projection + outflow; }
+  double outflow = 0;     // Darcy discharge
+  double withdrawal = 0;  // what the caller takes out of the cells (unsaturated flow)
+  double magnitude = 0;   // sum of the absolute values of the cells' terms, to judge the defect by
+  double defect() const { return storage + skeleton + projection + outflow + withdrawal; }
 };
 
 template <int D>

@@ -371,7 +371,9 @@ void UnsaturatedField<D>::accept() {
     balance_.storage += stored;
     balance_.skeleton += skeleton;
     balance_.projection -= projection_[c];
-    balance_.magnitude += std::abs(stored) + std::abs(skeleton) + std::abs(projection_[c]);
+    balance_.withdrawal += cell_[c].withdrawal;
+    balance_.magnitude +=
+        std::abs(stored) + std::abs(skeleton) + std::abs(projection_[c]) + std::abs(cell_[c].withdrawal);
   }
   const auto boundary = cells_.boundary_faces();
   const std::size_t interior = cells_.interior_faces().size();

@@ -67,6 +67,9 @@ struct UnsaturatedStep {
   std::span<const double> darcy_mobility;   // of the cells, saturated k / gamma_w [m2 / (Pa s)]
   std::span<const int> soil;                // of the cells: number in the field's list of soils
   std::span<const double> skeleton_compressibility = {};  // of the cells [1/Pa]; empty: 0
+  // Of the active cells: water that goes where no term below knows of, as into pores that have opened
+  // [m3/s].
+  std::span<const double> withdrawal = {};
   // A moving skeleton; empty: a rigid one.
   std::span<const double> velocity =
       {};  // predicted v* of the nodes, NodeGradient::kStride values a slot [m/s]
@@ -165,10 +168,11 @@ class UnsaturatedField {
   StepReport steady_steps(UnsaturatedStep step);
   StepReport steady_homotopy(const UnsaturatedStep& step);
   double passage(const UnsaturatedStep& step) const;
-  struct Cell {      // what a step holds for an active cell
-    double pores;    // n vf V / dt [m3/s]
-    double elastic;  // vf V (n / K_w + c_s) / dt [m3/(Pa s)]
-    double source;   // (D v*)_c [m3/s]
+  struct Cell {         // what a step holds for an active cell
+    double pores;       // n vf V / dt [m3/s]
+    double elastic;     // vf V (n / K_w + c_s) / dt [m3/(Pa s)]
+    double source;      // (D v*)_c [m3/s]
+    double withdrawal;  // [m3/s]
   };
   // A well or drain in one cell: takes conductance * (p - pressure), not less than `least`, not more than
   // `most` [m3/s].

@@ -40,6 +40,8 @@ void UnsaturatedField<D>::prepare(const UnsaturatedStep& step) {
     throw std::logic_error("UnsaturatedField: velocity or mobility does not cover the grid");
   if (!step.skeleton_compressibility.empty() && step.skeleton_compressibility.size() < slots)
     throw std::logic_error("UnsaturatedField: the compressibility does not cover the grid");
+  if (!step.withdrawal.empty() && step.withdrawal.size() < static_cast<std::size_t>(cells_.count()))
+    throw std::logic_error("UnsaturatedField: the withdrawal does not cover the cells");
   prepare_soils(step);
 
   const auto cells = cells_.cells();
@@ -51,6 +53,7 @@ void UnsaturatedField<D>::prepare(const UnsaturatedStep& step) {
     cell_[c].pores = step.porosity[slot] * volume;
     cell_[c].elastic = (step.porosity[slot] / water_.bulk_modulus + skeleton) * volume;
     cell_[c].source = inertia_ ? cell_outflow<D>(cells[c], step.velocity) : 0;
+    cell_[c].withdrawal = step.withdrawal.empty() ? 0 : step.withdrawal[c];
     was_wet_[c] = wet(c);
     positive_old_[c] = positive(c);
     projection_[c] = 0;
@@ -209,7 +212,7 @@ typename UnsaturatedField<D>::Residual UnsaturatedField<D>::gather() {
   for_each(cells_.count(), [&](int c) {
     const Cell& k = cell_[c];
     const double stored = k.pores * (s_now_[c] - s_old_[c]) + k.elastic * s_now_[c] * (p_now_[c] - p_old_[c]);
-    double balance = -stored - s_now_[c] * k.source, projection = 0;
+    double balance = -stored - s_now_[c] * k.source - k.withdrawal, projection = 0;
     double sink = k.pores * capacity_[c] + k.elastic * s_now_[c], links = 0, gravity = 0, motion = 0;
     for (int side = 0; side < 2 * D; ++side) {
       const int face = cells[c].faces[side];
@@ -249,7 +252,7 @@ typename UnsaturatedField<D>::Residual UnsaturatedField<D>::gather() {
     const Cell& k = cell_[c];
     const double stored = k.pores * (s_now_[c] - s_old_[c]) + k.elastic * s_now_[c] * (p_now_[c] - p_old_[c]);
     total.sum += std::abs(rhs_[c]);
-    total.scale += std::abs(stored) + std::abs(s_now_[c] * k.source);
+    total.scale += std::abs(stored) + std::abs(s_now_[c] * k.source) + std::abs(k.withdrawal);
     total.rounding += rounding_[c];
     if (diagonal_[c] > 0) {
       norm2 += diagonal_[c] * p_now_[c] * p_now_[c];

@@ -166,3 +166,55 @@ TEST_CASE("soil under hydrostatic suction rests in every stage") {
                        << simulation.cell_quantity({0.25, 0.75, 0}, "pore_pressure") - start << " Pa off");
   }
 }
+
+// A pond on the soil, told as a head on its surface: the water starts hydrostatic below the pond, the soil
+// under its own buoyant weight, and nothing moves.
+TEST_CASE("soil under a pond rests in every stage") {
+  set_threads(1);
+  constexpr double kPond = 1.6, kGround = 1;
+  for (const bool by_pressure : {false, true}) {
+    CAPTURE(by_pressure);
+    Scene s = wet_scene({}, 0.5, 1.5, 1);
+    coupling::Material soil = silty_sand();
+    soil.model = mpm::MaterialModel::linear_elastic;
+    s.materials = {soil};
+    coupling::Body column = box(0, 0, 0.5, kGround, {});
+    column.stress.kind = coupling::InitialStress::Kind::k0;
+    column.stress.k0 = {0.3 / 0.7};
+    s.bodies = {column};
+    s.water = {};
+    coupling::WaterBoundary pond;
+    pond.name = "pond";
+    pond.side = coupling::WaterBoundary::kOnSurface;
+    pond.kind = by_pressure ? coupling::WaterBoundary::Kind::pressure : coupling::WaterBoundary::Kind::head;
+    pond.value = {{0}, {by_pressure ? (kPond - kGround) * kUnitWeight : kPond}};
+    s.water_boundaries = {pond};
+    Stage rest = stage("rest", Stage::Mode::equilibrium, 20);
+    rest.water_flows = false;
+    rest.force_tolerance = 1e-6, rest.energy_tolerance = 1e-3;
+    rest.reset_velocity = true;
+    Stage follows = stage("quasi-static", Stage::Mode::quasi_static, 3600);
+    follows.force_tolerance = 1e-6;
+    s.stages = {rest, stage("seepage", Stage::Mode::seepage, 3600), follows,
+                stage("dynamic", Stage::Mode::dynamic, 0.2)};
+    Simulation simulation(s);
+    const coupling::Vector3 low{0.25, 0.25, 0};
+    const double start = simulation.cell_quantity(low, "pore_pressure");
+    CHECK(start == doctest::Approx(kUnitWeight * (kPond - 0.25)).epsilon(1e-9));
+    const int point = simulation.probe_particle(low);
+    const double height = simulation.particle_quantity(point, "position_y");
+    const double buoyant = -(1 - 0.46) * (2700 - 1000) * kGravity * (kGround - height);
+    CHECK(simulation.particle_quantity(point, "stress_yy") == doctest::Approx(buoyant).epsilon(0.01));
+    double fastest = 0;
+    while (!simulation.finished()) {
+      const bool moving = simulation.stage() == 3;
+      simulation.step();
+      if (moving) fastest = std::max(fastest, column_of(simulation, "max_speed[m/s]"));
+    }
+    CHECK(simulation.cell_quantity(low, "pore_pressure") == doctest::Approx(start).epsilon(1e-4));
+    CHECK(simulation.particle_quantity(point, "stress_yy") == doctest::Approx(buoyant).epsilon(0.01));
+    CHECK(std::abs(column_of(simulation, "water_outflow[m3]")) < 1e-6);
+    CHECK(fastest < 2e-5);
+    MESSAGE("fastest " << fastest << " m/s, outflow " << column_of(simulation, "water_outflow[m3]") << " m3");
+  }
+}
