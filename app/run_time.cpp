@@ -6,6 +6,7 @@
 
 #include "core/error.hpp"
 #include "coupling/simulation.hpp"
+#include "coupling/water_pace.hpp"
 
 namespace polder::app {
 namespace {
@@ -16,9 +17,6 @@ using coupling::Stage;
 
 constexpr double kPatience = 1.0;        // of a trial [s]
 constexpr int kWarmUp = 2, kMost = 200;  // steps
-// Of the water, unless the stage says otherwise: its largest step and its first one as shares of the
-// duration, and by how much one step may exceed the one before it.
-constexpr double kLargestStep = 1e-2, kFirstStep = 1e-5, kGrowth = 1.5;
 
 // Whether a step of both costs the same.
 bool alike(const Stage& a, const Stage& b) {
@@ -52,10 +50,9 @@ double trial(const Scene& scene, const Stage& stage) {
 // The fewest steps in which water comes through its stage; 0: any number, because the flow itself ends it.
 double fewest_water_steps(const Stage& s) {
   if (s.until == Stage::Until::steady) return 0;
-  const double largest = s.largest_step > 0 ? s.largest_step : kLargestStep * s.duration;
-  const double first = s.first_step > 0 ? s.first_step : kFirstStep * s.duration;
-  const double growing = std::log(std::max(1.0, largest / first)) / std::log(kGrowth);
-  return std::ceil(s.duration / largest + growing);
+  const coupling::WaterPace pace = coupling::water_pace(s);
+  const double growing = std::log(std::max(1.0, pace.largest / pace.first)) / std::log(pace.growth);
+  return std::ceil(s.duration / pace.largest + growing);
 }
 
 }  // namespace

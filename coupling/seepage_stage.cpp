@@ -20,18 +20,14 @@
 #include "coupling/stopwatch.hpp"
 #include "coupling/unsaturated.hpp"
 #include "coupling/volume_feedback.hpp"
+#include "coupling/water_pace.hpp"
 
 namespace polder::coupling {
 namespace {
 
-constexpr int kEasy = 5, kHard = 20;            // iterations
-constexpr double kGrowth = 1.5, kShrink = 0.7;  // of the step after an easy and a hard one
-// On the way to a steady state the path does not matter, only that the iteration gets along.
-constexpr int kEasySteady = 10;
-constexpr double kSteadyGrowth = 4;
-constexpr double kBack = 1.0 / 3;         // after one that did not converge
-constexpr double kSmallestShare = 1e-10;  // of the stage's duration
-constexpr double kFirstShare = 1e-5, kLargestShare = 1e-2;
+constexpr int kHard = 20;             // iterations
+constexpr double kShrink = 0.7;       // of the step after a hard one
+constexpr double kBack = 1.0 / 3;     // after one that did not converge
 constexpr double kRelaxShare = 0.02;  // of the hydrostatic pressure over the height of the soil
 
 // One step of water through a saturated scene at rest, with what the soil's change of volume takes.
@@ -71,17 +67,9 @@ template <int D>
 double Simulation::Run<D>::flow(double left) {
   const Stage& spec = present();
   PoreWater<D>& w = *world->pore_water;
-  const bool steady = spec.until == Stage::Until::steady;
-  const double largest = spec.largest_step > 0 ? spec.largest_step
-                         : steady              ? spec.duration
-                                               : kLargestShare * spec.duration;
-  const double growth = steady ? kSteadyGrowth : kGrowth;
-  const int easy = steady ? kEasySteady : kEasy;
-  double smallest_step = kSmallestShare * spec.duration;
-  if (spec.first_step > 0)
-    smallest_step = std::min(smallest_step, kSmallestShare / kFirstShare * spec.first_step);
-  if (water_step == 0)
-    water_step = std::min(largest, spec.first_step > 0 ? spec.first_step : kFirstShare * spec.duration);
+  const WaterPace pace = water_pace(spec);
+  const double largest = pace.largest, growth = pace.growth;
+  if (water_step == 0) water_step = std::min(largest, pace.first);
   for (;;) {
     const bool whole = water_step < left;
     const double step_size = std::min(water_step, left);
@@ -105,12 +93,12 @@ double Simulation::Run<D>::flow(double left) {
     const fdm::StepReport report = flow_unsaturated(*world, in);
     if (report.converged) {
       if (follows) settle_withdrawal(*world, step_size, before);
-      if (report.iterations <= easy && whole) water_step = std::min(largest, growth * water_step);
+      if (report.iterations <= pace.easy && whole) water_step = std::min(largest, growth * water_step);
       if (report.iterations >= kHard && !report.lagged) water_step = kShrink * step_size;
       return step_size;
     }
     water_step = kBack * step_size;
-    if (water_step < smallest_step)
+    if (water_step < pace.smallest)
       throw NumericalError("stage '" + spec.name + "': the flow of water did not converge with a step of " +
                            fdm::number(step_size) + " s at " + fdm::number(time) + " s: residual " +
                            fdm::number(report.residual) + " after " + std::to_string(report.iterations) +
