@@ -53,10 +53,11 @@ TEST_CASE("slow drawdown, to three per cent") {
 }
 
 TEST_CASE("thin weak layers that govern") {
-  // A slip line is two cells wide; one that is to stay inside the layer needs four of them across it. The
-  // published factors are given to the nearest 0.05, which is a tenth of the smallest.
+  // A slip line is two cells wide; one that is to stay inside the layer needs four of them across it, and
+  // with three and a half the factor is that much above the upper bound of limit analysis. The published
+  // factor is beyond the bound by twice as much.
   set_threads(1);
-  constexpr double kReading = 0.05;
+  constexpr double kTooFewCells = 0.08;
   const CsvTable table = reference("slope_weak_layer.csv", {});
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const double ratio = table.column("cu2_over_cu1[-]")[i];
@@ -64,8 +65,9 @@ TEST_CASE("thin weak layers that govern") {
     const double published = table.column("FS_published[-]")[i];
     const double found =
         factor_of("cu2/cu1 " + std::to_string(ratio), weak_layer_scene(ratio, 0.25), published, 0.01);
-    CHECK(std::abs(found - published) < kReading);
-    CHECK(found < table.column("FS_three_blocks[-]")[i]);
+    CHECK(found > table.column("FS_lower[-]")[i]);
+    CHECK(found < (1 + kTooFewCells) * table.column("FS_upper[-]")[i]);
+    CHECK(found < published);
   }
 }
 
