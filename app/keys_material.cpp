@@ -268,7 +268,8 @@ const Table<WaterSpec>& pore_water_keys() {
                               {"field", W::Initial::field}}),
           &W::initial,
           "Initial pore pressure in saturated soil: zero, hydrostatic below the phreatic line (or the soil's "
-          "surface), the steady state of the boundaries at time 0, or the field given by initial_pressure, "
+          "surface, or the open water on it), the steady state of the boundaries at time 0, or the field "
+          "given by initial_pressure, "
           "initial_gradient and initial_datum.");
     const auto field = [](const W& w) { return w.initial == W::Initial::field; };
     t.add("initial_pressure", number(dimension::kPressure), &W::initial_pressure,
