@@ -64,6 +64,16 @@ void check_drag(Reader& reader) {
       reader.error(key, "formulation \"" + scene.formulation + "\" has Darcy's drag only",
                    "\"darcy\"; or formulation = \"two-layer\"");
   }
+  for (const coupling::Material& m : scene.materials) {
+    const std::string key = "material." + m.name + ".fluidisation_porosity";
+    if (m.fluidisation_porosity == 0 || reader.failed(key)) continue;
+    if (!scene.layered())
+      reader.error(key, "formulation \"" + scene.formulation + "\" has no grains apart from their water",
+                   "no fluidisation_porosity; or formulation = \"two-layer\"");
+    else if (!m.drag_of_grains() && !reader.failed("material." + m.name + ".drag_law"))
+      reader.error(key, "the drag law does not know grains without contact",
+                   "drag_law = \"ergun\", \"gidaspow\" or \"di-felice\"");
+  }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const auto material = static_cast<std::size_t>(scene.bodies[i].material);
     if (material >= scene.materials.size()) continue;
@@ -79,12 +89,32 @@ void check_drag(Reader& reader) {
   }
 }
 
+// Viscosity and sticking are for water with particles; what is inviscid cannot stick.
+void check_shear(Reader& reader) {
+  const Scene& scene = reader.scene;
+  if (scene.water.viscous && !scene.layered() && !reader.failed("pore_water.viscous"))
+    reader.error("pore_water.viscous",
+                 "formulation \"" + scene.formulation + "\" has no particles of water that could shear",
+                 "false; or formulation = \"two-layer\"");
+  for (std::size_t i = 0; i < scene.boundaries.size(); ++i) {
+    const coupling::Boundary& b = scene.boundaries[i];
+    const std::string key = "boundary." + std::to_string(i + 1) + ".water";
+    if (!b.is_wall() || b.water != coupling::Boundary::WaterContact::no_slip || reader.failed(key)) continue;
+    if (!scene.layered())
+      reader.error(key, "formulation \"" + scene.formulation + "\" has no particles of water to stick",
+                   "\"slip\"; or formulation = \"two-layer\"");
+    else if (!scene.water.viscous && !reader.failed("pore_water.viscous"))
+      reader.error(key, "water without viscosity does not stick", "\"slip\"; or pore_water.viscous = true");
+  }
+}
+
 }  // namespace
 
 void check_water_layer(Reader& reader) {
   const Scene& scene = reader.scene;
   if (reader.failed("formulation")) return;
   check_drag(reader);
+  check_shear(reader);
   if (!scene.layered()) {
     if (!scene.water_bodies.empty() && !reader.failed("water_body"))
       reader.error("water_body.1",

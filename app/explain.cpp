@@ -28,6 +28,29 @@ std::string name_of(T value, std::initializer_list<std::pair<T, const char*>> na
   return "?";
 }
 
+// What acts on water with particles of its own besides pressure.
+void explain_layer(const Scene& scene, std::ostream& out) {
+  using coupling::DragLaw;
+  for (const coupling::Material& m : scene.materials) {
+    if (m.porosity <= 0) continue;
+    out << "  drag        \"" << m.name << "\": "
+        << name_of(m.drag_law, {{DragLaw::darcy, "Darcy"},
+                                {DragLaw::forchheimer, "Forchheimer"},
+                                {DragLaw::ergun, "Ergun"},
+                                {DragLaw::gidaspow, "Gidaspow"},
+                                {DragLaw::di_felice, "Di Felice"}})
+        << ", implicit: it does not limit the step";
+    if (m.fluidisation_porosity > 0)
+      out << "; no contact above porosity " << format_number(m.fluidisation_porosity);
+    out << '\n';
+  }
+  if (scene.water.viscous)
+    out << "  viscosity   " << format_number(scene.water.viscosity)
+        << " Pa s, implicit: it does not limit the step\n";
+  else
+    out << "  viscosity   none: water slips along walls\n";
+}
+
 void explain_formulation(const Scene& scene, std::ostream& out) {
   using namespace coupling;
   const Formulation& f = *find_formulation(scene.formulation);
@@ -49,6 +72,7 @@ void explain_formulation(const Scene& scene, std::ostream& out) {
                   {PressureMethod::compressible,
                    "explicitly from the bulk modulus: stiff water and Darcy flow limit the step"}})
       << '\n';
+  if (scene.layered()) explain_layer(scene, out);
   if (!scene.unsaturated()) return;
   out << "  saturation  from the retention curves of";
   for (const Material& m : scene.materials)

@@ -355,6 +355,12 @@ const Table<Boundary>& boundary_keys() {
           "holds; tied: this side and the one across move alike, as in an endless slope; traction, pressure: "
           "load on the surface of the soil.")
         .required();
+    t.add("water",
+          choice<B::WaterContact>({{"slip", B::WaterContact::slip}, {"no-slip", B::WaterContact::no_slip}}),
+          &B::water,
+          "Water with particles of its own slips along the wall, or (no-slip, viscous water) sticks to it.")
+        .only_with("kind", "kind = \"fixed\", \"roller\", \"friction\" or \"velocity\"",
+                   [](const B& b) { return b.is_wall(); });
     t.add("coefficient", number(dimension::kNone, kNotNegative), &B::coefficient,
           "Friction coefficient, the tangent of the friction angle.")
         .required()

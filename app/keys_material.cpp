@@ -196,6 +196,11 @@ const Table<Material>& material_keys() {
         .without_default()
         .required()
         .only_with("drag_law", with_grains, granular);
+    t.add("fluidisation_porosity", number(dimension::kNone, {.min = 0, .max = 1, .max_open = true}),
+          &M::fluidisation_porosity,
+          "Porosity above which grains that have lost their effective stress are out of contact, until it "
+          "falls to this value again; 0: never. Needs a drag law of grains.")
+        .only_with("model", with_mohr_coulomb, mohr_coulomb);
     t.add("anisotropy", numbers(dimension::kNone, kPositive), &M::anisotropy,
           "Factors on the conductivity along the axes of the grid, e.g. [1, 0.1]; without it 1.");
     t.add("kozeny_carman", boolean(), &M::kozeny_carman,
@@ -244,8 +249,13 @@ const Table<WaterSpec>& pore_water_keys() {
     t.add("bulk_modulus", number(dimension::kPressure, stiffness), &W::bulk_modulus,
           "Bulk modulus of the water; inf: incompressible. Formulation higo needs a finite one, and its step "
           "shortens with the root of it or more.");
-    t.add("viscosity", number(dimension::kViscosity, kPositive), &W::viscosity,
-          "Dynamic viscosity; turns intrinsic permeability into hydraulic conductivity.");
+    t.add(
+        "viscosity", number(dimension::kViscosity, kPositive), &W::viscosity,
+        "Dynamic viscosity; turns intrinsic permeability into hydraulic conductivity, and acts in drag laws "
+        "of grains and where water is viscous.");
+    t.add("viscous", boolean(), &W::viscous,
+          "true: water with particles of its own resists shear by its viscosity, so that it can stick to "
+          "walls.");
     t.add("phreatic", section_points(2), &W::phreatic,
           "Phreatic line, from left to right; the soil below it is saturated. Without it all soil is. In 3D "
           "it is the same at every y.");

@@ -5,6 +5,7 @@
 #include "core/error.hpp"
 #include "coupling/body_shape.hpp"
 #include "coupling/drag_exchange.hpp"
+#include "coupling/fluidisation.hpp"
 #include "coupling/initial_state.hpp"
 #include "coupling/points.hpp"
 #include "coupling/random_field.hpp"
@@ -278,6 +279,7 @@ std::unique_ptr<World<D>> build_world(const Scene& scene) {
     set_saturation(*world);
   }
   if (!scene.unsaturated()) set_initial_stress(*world);  // else when the suction is known
+  if (scene.layered()) fluidise(*world);
   world->skeleton.set_laws(world->materials, true);
   world->skeleton.sort(true);
   if (world->pore_water && world->pore_water->layer) world->pore_water->layer->fluid.follow_grid();

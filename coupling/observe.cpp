@@ -6,6 +6,7 @@
 
 #include "core/error.hpp"
 #include "coupling/between_centres.hpp"
+#include "coupling/fluidisation.hpp"
 #include "coupling/quantities.hpp"
 #include "coupling/simulation_run.hpp"
 #include "mpm/point_stencil.hpp"
@@ -96,6 +97,7 @@ std::vector<Column> Simulation::Run<D>::history() const {
       add("water_points", water.layer->fluid.points().count());
       add("water_runout[m]", t.water_runout);
       add("water_height[m]", t.water_height);
+      if (scene.fluidises()) add("fluidised[-]", fluidised_share(*world));
     }
     if (has_quasi_static_stage(scene)) {
       add("relaxations", static_cast<double>(relaxations));

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "coupling/scene.hpp"
+#include "coupling/water_viscosity.hpp"
 #include "fdm/pressure_field.hpp"
 #include "fdm/unsaturated_field.hpp"
 #include "fdm/volume_correction.hpp"
@@ -45,11 +46,14 @@ struct WaterLayer {
       : fluid(grid, scene.grid.space, scene.grid.shape,
               scene.numerics.water_transfer == Transfer::apic ? mpm::AffineKind::apic : mpm::AffineKind::none,
               scene.numerics.water_flip, std::move(boundaries)),
-        correction(cells) {}
+        correction(cells) {
+    if (scene.water.viscous) viscosity = std::make_unique<WaterViscosity<D>>(grid, scene.water.viscosity);
+  }
 
   mpm::FluidLayer<D> fluid;
   fdm::VolumeCorrection<D> correction;
-  double spacing = 0;  // of new points [m]
+  std::unique_ptr<WaterViscosity<D>> viscosity;  // where the scene asks for it
+  double spacing = 0;                            // of new points [m]
   // Cells (slots): volume of the water's points; share taken by soil, its pores included; resistance of the
   // pores per volume of water [Pa s/m2]; volume that has come in through open sides and has no point yet
   // [m3].
@@ -58,6 +62,7 @@ struct WaterLayer {
   Reals grains, water, grains_response, water_response;
   Reals divergence, face_mobility;  // of cells and faces, see fdm/mixture_flow.hpp
   Reals displacement;               // of the nodes, that takes the drift out of the volumes [m]
+  std::vector<Reals> fluidised;     // bodies, by the number of the point: 1 where it is (fluidisation.hpp)
   fdm::Discharge discharge;
   bool held = false;              // by the soil, while it relaxes
   double added = 0, removed = 0;  // volume of the points that came and went through open sides [m3]

@@ -93,6 +93,7 @@ std::vector<Quantity> history_quantities(const Scene& scene) {
     list.push_back({"pressure_cells", ""});
     if (scene.layered())
       list.insert(list.end(), {{"water_points", ""}, {"water_runout", "m"}, {"water_height", "m"}});
+    if (scene.layered() && scene.fluidises()) list.push_back({"fluidised", ""});
     if (has_quasi_static_stage(scene)) {
       for (const char* name : {"relaxations", "relaxation_steps", "unbalanced_relaxations"})
         list.push_back({name, ""});

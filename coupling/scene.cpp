@@ -57,6 +57,11 @@ bool Scene::layered() const {
   return f != nullptr && f->carrier == WaterCarrier::particles;
 }
 
+bool Scene::fluidises() const {
+  return std::any_of(materials.begin(), materials.end(),
+                     [](const Material& m) { return m.fluidisation_porosity > 0; });
+}
+
 bool Scene::drag_follows_flow() const {
   return std::any_of(materials.begin(), materials.end(),
                      [](const Material& m) { return m.porosity > 0 && m.drag_law != DragLaw::darcy; });

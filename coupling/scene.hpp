@@ -114,6 +114,9 @@ struct Material : mpm::MaterialParameters {
   DragLaw drag_law = DragLaw::darcy;
   double forchheimer = 0;     // b in i = q / k + b q^2 [s2/m2]
   double grain_diameter = 0;  // of drag laws that know grains [m]
+  // Porosity above which grains without effective stress have no contact, see fluidisation.hpp; 0: always
+  // some
+  double fluidisation_porosity = 0;
   BishopFactor bishop = BishopFactor::effective_saturation;
   double capillary_suction = 0;  // suction at which the capillary cohesion is all there [Pa]
   // Laws that know grains find the conductivity themselves.
@@ -133,7 +136,8 @@ inline double kozeny_carman(double porosity) {
 struct WaterSpec {
   double density = 1000;        // [kg/m3]
   double bulk_modulus = 2.2e9;  // [Pa], may be infinite
-  double viscosity = 1e-3;      // dynamic [Pa s]; converts an intrinsic permeability given in the case file
+  double viscosity = 1e-3;  // dynamic [Pa s]; of drag laws, intrinsic permeabilities, and shear if viscous
+  bool viscous = false;     // water with points of its own resists shear
   // Polyline, soil below it is saturated; empty = all soil of porous materials is. In 3D the first two
   // components of its points are x and z, and it is the same at every y.
   std::vector<Vector3> phreatic;
@@ -248,10 +252,15 @@ struct Boundary {
   std::optional<int> side;
   std::optional<std::array<Vector3, 2>> segment;  // also restricts a side to a part of it when both are given
   std::vector<Vector3> polygon;
+  // What walls do to water with points of its own: it slips along them, or sticks to them and moves as they
+  // do.
+  enum class WaterContact { slip, no_slip } water = WaterContact::slip;
   double coefficient = 0;                            // friction: tan of the friction angle [-]
   std::array<std::optional<TimeTable>, 3> velocity;  // velocity: prescribed components [m/s], others free
   std::array<TimeTable, 3> traction;                 // traction: force per area [Pa] on the surface
   TimeTable pressure;                                // pressure: normal compression [Pa]; acts into the soil
+  bool loads() const { return kind == Kind::traction || kind == Kind::pressure; }
+  bool is_wall() const { return !loads() && kind != Kind::free && kind != Kind::tied; }
   bool operator==(const Boundary&) const = default;
 };
 
@@ -364,6 +373,7 @@ struct Scene {
   // Some material has a retention curve: water in cells is computed as unsaturated flow.
   bool unsaturated() const;
   bool layered() const;            // water has points of its own
+  bool fluidises() const;          // some material may lose contact between its grains
   bool drag_follows_flow() const;  // some drag law depends on more than the soil
   bool kozeny_carman() const;  // conductivities follow the porosity, those of all porous materials or of none
   std::vector<mpm::MaterialParameters> skeleton_materials() const;

@@ -324,6 +324,8 @@ void Simulation::Run<D>::visit_water(StateVisitor& v) {
     visit_points(v, "water/", layer.fluid.points());
     owed = layer.owed;
     v.reals("water_owed", owed);
+    for (std::size_t b = 0; b < layer.fluidised.size(); ++b)
+      v.reals("fluidised_" + std::to_string(b), layer.fluidised[b]);
     v.number("water_added", layer.added), v.number("water_removed", layer.removed);
     if (v.reading()) layer.fluid.follow_grid();
   }

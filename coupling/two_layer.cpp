@@ -6,6 +6,7 @@
 
 #include "core/threads.hpp"
 #include "coupling/drag_exchange.hpp"
+#include "coupling/fluidisation.hpp"
 #include "coupling/initial_state.hpp"
 #include "coupling/stopwatch.hpp"
 #include "fdm/mixture_flow.hpp"
@@ -246,6 +247,7 @@ mpm::MoveResult step_two_layer(World<D>& world, const StepInput& in, long step) 
   push_by_pressure(world);  // leaves grad p^n at the nodes
   skeleton.predict(in.dt, gravity, in.damping, &w.acceleration);
   predict_water<D>(world, end, in.dt, gravity);
+  if (layer.viscosity) layer.viscosity->diffuse(layer.fluid, layer.sums, in.dt, layer.fluid.velocity());
   exchange_drag(world, end, in.dt);
   skeleton.constrain(end, in.dt);
   {
@@ -262,6 +264,7 @@ mpm::MoveResult step_two_layer(World<D>& world, const StepInput& in, long step) 
   const mpm::MoveResult flowed = layer.fluid.gather(in.time, in.dt);
   skeleton.add_travel(std::max(0.0, flowed.largest_displacement - moved.largest_displacement));
   moved.largest_speed = std::max(moved.largest_speed, flowed.largest_speed);
+  fluidise(world);
   if (world.scene.drag_follows_flow()) follow_flow(world);
   pass_open_sides(world, in.dt);
   if (step % kDriftInterval == 0) {

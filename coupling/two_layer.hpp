@@ -8,8 +8,8 @@
 // Drag is exchanged implicitly at each node, so it limits no step and conserves momentum exactly; pressure is
 // projected out of the mixture's flow. Order of a step:
 //   sort, cells (fill of water, porosity, drag), scatter both layers,
-//   predict with grad p^n, constrain, exchange drag, solve for dp, correct both with grad dp, gather both,
-//   take the drift out of the water's volume, let points in and out at open sides.
+//   predict with grad p^n, constrain, let viscosity act, exchange drag, solve for dp, correct both with grad
+//   dp, gather both, take the drift out of the water's volume, let points in and out at open sides.
 #pragma once
 
 #include "coupling/one_layer.hpp"
@@ -21,7 +21,8 @@ namespace polder::coupling {
 template <int D>
 void seed_water(World<D>& world);
 
-// Boundaries of the water along those of the soil: it slips along all walls and passes where a side is open.
+// Boundaries of the water along those of the soil: it slips along walls or sticks to them, and passes where a
+// side is open.
 template <int D>
 mpm::BoundarySet<D> water_walls(const Scene& scene, const mpm::BoundarySet<D>& soil);
 

@@ -91,8 +91,20 @@ template <int D>
 mpm::BoundarySet<D> water_walls(const Scene& scene, const mpm::BoundarySet<D>& soil) {
   using mpm::BoundaryKind;
   std::vector<mpm::BoundarySpec<D>> specs;
+  // Those of the soil: the sides of the grid, then the scene's boundaries but for the loads.
+  std::vector<bool> sticky(2 * D, false);
+  for (const Boundary& b : scene.boundaries)
+    if (!b.loads()) sticky.push_back(b.is_wall() && b.water == Boundary::WaterContact::no_slip);
   for (mpm::BoundarySpec<D> s : soil.specs()) {
-    if (s.kind == BoundaryKind::fixed || s.kind == BoundaryKind::friction) s.kind = BoundaryKind::roller;
+    const bool wall =
+        s.kind == BoundaryKind::fixed || s.kind == BoundaryKind::friction || s.kind == BoundaryKind::roller;
+    const bool sticks = sticky[specs.size()];
+    if (wall) s.kind = sticks ? BoundaryKind::fixed : BoundaryKind::roller;
+    if (s.kind == BoundaryKind::velocity)  // a wall that moves: all of it, or only across itself
+      for (int d = 0; d < D; ++d) {
+        if (sticks && !s.prescribed[d]) s.prescribed[d] = true, s.velocity[d] = [](double) { return 0.0; };
+        if (!sticks && s.side >= 0 && d != s.side / 2) s.prescribed[d] = false;
+      }
     specs.push_back(std::move(s));
   }
   for (const WaterBoundary& b : scene.water_boundaries) {
