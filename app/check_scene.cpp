@@ -285,6 +285,7 @@ void check_scene(Reader& reader) {
   check_bodies(reader);
   check_water(reader);
   check_water_layer(reader);
+  check_water_on_points(reader);
   check_boundaries(reader);
   check_measures(reader);
   const Vector3& g = reader.scene.gravity;

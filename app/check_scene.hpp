@@ -17,6 +17,7 @@ void check_names(Reader& reader);  // also gives names to what has none
 void check_bodies(Reader& reader);
 void check_water(Reader& reader);
 void check_water_layer(Reader& reader);
+void check_water_on_points(Reader& reader);
 void check_boundaries(Reader& reader);
 void check_measures(Reader& reader);
 

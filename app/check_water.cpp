@@ -193,7 +193,8 @@ void check_unsaturated(Reader& reader) {
     if (unsaturated || reader.failed(key)) continue;
     const bool needs_suction = w.kind == Kind::flux || w.kind == Kind::rain || w.kind == Kind::evaporation ||
                                w.kind == Kind::seepage_face;
-    if (scene.layered() && needs_suction) continue;  // check_water_layer() says what it knows
+    // check_water_layer(), check_water_on_points() say what they know
+    if ((scene.layered() && needs_suction) || scene.on_points()) continue;
     if (needs_suction)
       reader.error(key + ".kind", "needs unsaturated flow, and no material has a retention curve", needed);
     else if (w.side == WaterBoundary::kOnSurface)
@@ -205,6 +206,7 @@ void check_unsaturated(Reader& reader) {
   for (std::size_t i = 0; i < scene.water_lines.size(); ++i) {
     const std::string key = "water_line." + std::to_string(i + 1);
     if (reader.failed(key)) continue;
+    if (scene.on_points()) continue;
     if (!unsaturated)
       reader.error(key, "needs unsaturated flow, and no material has a retention curve", needed);
     else if (scene.dimension() == 3)

@@ -80,7 +80,9 @@ const Table<GridSpec>& grid_keys() {
 }
 
 const Table<NumericsSpec>& numerics_keys() {
+  using coupling::DragStep;
   using coupling::LockingCure;
+  using coupling::PointPressure;
   using coupling::StressOrder;
   using coupling::Transfer;
   static const Table<NumericsSpec> table = [] {
@@ -92,10 +94,10 @@ const Table<NumericsSpec>& numerics_keys() {
     t.add("transfer",
           choice<Transfer>({{"flip", Transfer::flip}, {"apic", Transfer::apic}, {"tpic", Transfer::tpic}}),
           &NumericsSpec::transfer, "Velocity between particles and grid: FLIP/PIC blend, affine, or Taylor.");
-    t.add(
-         "flip", number(dimension::kNone, {.min = 0, .max = 1}), &NumericsSpec::flip,
-         "Share of FLIP in the blend; the rest is PIC. With formulation higo that of a step of the skeleton, "
-         "spread over the shorter ones that the water asks for.")
+    t.add("flip", number(dimension::kNone, {.min = 0, .max = 1}), &NumericsSpec::flip,
+          "Share of FLIP in the blend; the rest is PIC. With formulations higo, u-p and v-w that of a step "
+          "of the skeleton, "
+          "spread over the shorter ones that the water asks for.")
         .only_with("transfer", "transfer = \"flip\"",
                    [](const NumericsSpec& n) { return n.transfer == Transfer::flip; });
     t.add("locking",
@@ -114,12 +116,30 @@ const Table<NumericsSpec>& numerics_keys() {
           "Share of FLIP in that blend.")
         .only_with("water_transfer", "water_transfer = \"flip\"",
                    [](const NumericsSpec& n) { return n.water_transfer == Transfer::flip; });
+    t.add("drag_step",
+          choice<DragStep>({{"implicit", DragStep::implicit}, {"explicit", DragStep::by_last_velocities}}),
+          &NumericsSpec::drag,
+          "Drag between grains and water in formulation v-w: implicit at each node, for any conductivity, or "
+          "by "
+          "the velocities of the last step, as published, which limits the step.");
+    t.add(
+        "point_pressure",
+        choice<PointPressure>({{"cell-mean", PointPressure::cell_mean},
+                               {"points", PointPressure::points},
+                               {"mixed", PointPressure::mixed}}),
+        &NumericsSpec::point_pressure,
+        "Pore pressure in formulations u-p and v-w: points of one cell share their mean head; each keeps its "
+        "own; or, mixed, cells full of points are integrated at their centre and the others by points.");
+    t.add("smooth_rates", boolean(), &NumericsSpec::smooth_rates,
+          "Smooth the change of volume that pore pressure follows over the nodes, in formulations u-p and "
+          "v-w.");
     t.add("time_step", number(dimension::kTime, kPositive), &NumericsSpec::time_step,
           "Fixed time step; without it the step is chosen from the limits.");
     t.add("courant", number(dimension::kNone, {.min = 0, .max = 1.5, .min_open = true}),
           &NumericsSpec::courant,
-          "Time step as a share of cell over drained wave speed, with formulation higo of what the water "
-          "allows, which is far less; the stable limit, 1.7 or more for musl, is what explain prints. "
+          "Time step as a share of cell over drained wave speed, with formulations higo, u-p and v-w of what "
+          "the "
+          "water allows, which is far less; the stable limit, 1.7 or more for musl, is what explain prints. "
           "Damped stages take 1 at most, because damping shortens it; formulation two-layer 0.5.")
         .only_with("time_step", "time_step absent", [](const NumericsSpec& n) { return !n.time_step; });
     t.add("rhie_chow", number(dimension::kNone, {.min = 0, .max = 1}), &NumericsSpec::rhie_chow,

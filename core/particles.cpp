@@ -35,6 +35,10 @@ std::vector<ParticleField> ParticleSet<D>::fields() {
   if (!conductivity.empty()) add("conductivity", conductivity);
   if (!wet.empty()) add("wet", wet);
   if (!nodal_weight.empty()) add("nodal_weight", nodal_weight);
+  if (!pore_pressure.empty()) add("pore_pressure", pore_pressure);
+  if (!expelled.empty()) add("expelled", expelled);
+  for (int d = 0; d < D; ++d)
+    if (!water_velocity[d].empty()) add(std::string("water_velocity_") + axis[d], water_velocity[d]);
   if (group_by_cell) add("home_cell", home_cell);
   return all;
 }

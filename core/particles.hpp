@@ -60,6 +60,11 @@ class ParticleSet {
   // around it [Pa s/m2].
   Reals nodal_weight;
 
+  // Where the points carry the pore water's state: its pressure [Pa], volume of water that has flowed out of
+  // a unit of volume in the last step [-], and with the water's full inertia its velocity [m/s].
+  Reals pore_pressure, expelled;
+  std::array<Reals, D> water_velocity;
+
   std::vector<int> id;        // -1 = padding
   std::vector<Range> ranges;  // one for each occupied block of the grid
 

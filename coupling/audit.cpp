@@ -76,16 +76,15 @@ void Audit<D>::add_step(const World<D>& world, double dt, double damping, double
       }
     }
   });
-  if (water != nullptr && water->layer) {
-    const mpm::FluidLayer<D>& fluid = water->layer->fluid;
+  const auto add_water = [&](const Reals& sums, const Reals& before, const Reals& after) {
     parallel_for(k.grid().blocks(), [&](int block) {
       Part& part = parts[block];
       for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
-        const double mass = fluid.sums()[static_cast<std::size_t>(i) * 8];
+        const double mass = sums[static_cast<std::size_t>(i) * 8];
         if (!(mass > 0)) continue;
         for (int d = 0; d < D; ++d) {
           const std::size_t j = static_cast<std::size_t>(i) * 4 + d;
-          const double v0 = fluid.velocity_old()[j], v1 = fluid.velocity()[j], mean = 0.5 * (v0 + v1);
+          const double v0 = before[j], v1 = after[j], mean = 0.5 * (v0 + v1);
           const double weight = dt * mass * gravity * world.gravity[d];
           part.work.gravity += weight * mean;
           part.work.water += (mass * (v1 - v0) - weight) * mean;
@@ -94,6 +93,12 @@ void Audit<D>::add_step(const World<D>& world, double dt, double damping, double
         }
       }
     });
+  };
+  if (water != nullptr && water->layer) {
+    const mpm::FluidLayer<D>& fluid = water->layer->fluid;
+    add_water(fluid.sums(), fluid.velocity_old(), fluid.velocity());
+  } else if (water != nullptr && water->points && water->points->relative_inertia) {
+    add_water(water->points->sums, water->points->velocity_old, water->points->velocity);
   }
   for (const Part& p : parts) {
     work_.stress += p.work.stress, work_.gravity += p.work.gravity, work_.water += p.work.water;
@@ -139,6 +144,17 @@ Totals Audit<D>::totals(const World<D>& world) const {
       }
       t.kinetic_energy += 0.5 * mass * square;
       t.largest_speed = std::max(t.largest_speed, square);
+      if (!set.water_velocity[0].empty() && set.wet[p] > 0) {
+        const double water_mass = world.scene.water.density * pores;
+        double flow = 0;
+        for (int d = 0; d < D; ++d) {
+          const double w = set.water_velocity[d][p];
+          flow += w * w;
+          t.momentum[d] += water_mass * w;
+        }
+        t.kinetic_energy += 0.5 * water_mass * flow;
+        t.largest_speed = std::max(t.largest_speed, flow);
+      }
       t.runout = std::max(t.runout, set.position[0][p] + set.half_size[0][p]);
       t.height = std::max(t.height, set.position[D - 1][p] + set.half_size[D - 1][p]);
       double diagonal = 0, trace = 0, shear = 0;

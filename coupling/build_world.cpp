@@ -7,6 +7,7 @@
 #include "coupling/drag_exchange.hpp"
 #include "coupling/fluidisation.hpp"
 #include "coupling/initial_state.hpp"
+#include "coupling/point_water.hpp"
 #include "coupling/points.hpp"
 #include "coupling/random_field.hpp"
 #include "coupling/two_layer.hpp"
@@ -277,6 +278,7 @@ std::unique_ptr<World<D>> build_world(const Scene& scene) {
     world->pore_water->compressible = formulation->pressure == PressureMethod::compressible;
     if (scene.layered()) add_water_layer(*world);
     set_saturation(*world);
+    if (scene.on_points()) add_point_water(*world);
   }
   if (!scene.unsaturated()) set_initial_stress(*world);  // else when the suction is known
   if (scene.layered()) fluidise(*world);

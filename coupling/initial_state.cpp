@@ -212,36 +212,37 @@ void set_initial_stress(World<D>& world) {
   }
 }
 
+std::function<double(const Vector3&)> initial_pressure(const Scene& scene, double unit_weight) {
+  const int up = scene.dimension() - 1;
+  switch (scene.water.initial) {
+    case WaterSpec::Initial::zero:
+      return [](const Vector3&) { return 0.0; };
+    case WaterSpec::Initial::field:
+      return [&scene, up](const Vector3& x) {
+        return scene.water.initial_pressure +
+               scene.water.initial_gradient * (x[up] - scene.water.initial_datum);
+      };
+    case WaterSpec::Initial::steady:  // begins from here where it is found step by step
+    case WaterSpec::Initial::hydrostatic:
+      break;
+  }
+  return [&scene, up, unit_weight, shapes = shapes_of(scene.bodies, scene.grid),
+          waters = shapes_of(scene.water_bodies, scene.grid)](const Vector3& x) {
+    const double hydrostatic = unit_weight * (pressure_datum(scene, shapes, waters, x, unit_weight) - x[up]);
+    return scene.unsaturated() ? hydrostatic : std::max(0.0, hydrostatic);
+  };
+}
+
 template <int D>
 void set_cell_pressure(const World<D>& world, Reals& p) {
   const PoreWater<D>& water = *world.pore_water;
-  const Scene& scene = world.scene;
-  const bool suction = water.unsaturated != nullptr;
-  const double unit_weight = world.unit_weight();
-  switch (scene.water.initial) {
-    case WaterSpec::Initial::zero:
-      std::fill(p.begin(), p.end(), 0.0);
-      break;
-    case WaterSpec::Initial::field:
-      for (const fdm::ActiveCell<D>& cell : water.cells.cells())
-        p[cell.slot] = scene.water.initial_pressure +
-                       scene.water.initial_gradient *
-                           (water.cells.centre(cell.index)[D - 1] - scene.water.initial_datum);
-      break;
-    case WaterSpec::Initial::steady:  // begins from here where it is found step by step
-    case WaterSpec::Initial::hydrostatic: {
-      const std::vector<BodyShape> shapes = shapes_of(scene.bodies, scene.grid);
-      const std::vector<BodyShape> waters = shapes_of(scene.water_bodies, scene.grid);
-      for (const fdm::ActiveCell<D>& cell : water.cells.cells()) {
-        Vector3 x{};
-        const Point<D> c = water.cells.centre(cell.index);
-        for (int d = 0; d < D; ++d) x[d] = c[d];
-        const double hydrostatic =
-            unit_weight * (pressure_datum(scene, shapes, waters, x, unit_weight) - x[D - 1]);
-        p[cell.slot] = suction ? hydrostatic : std::max(0.0, hydrostatic);
-      }
-      break;
-    }
+  const auto pressure = initial_pressure(world.scene, world.unit_weight());
+  if (world.scene.water.initial == WaterSpec::Initial::zero) std::fill(p.begin(), p.end(), 0.0);
+  for (const fdm::ActiveCell<D>& cell : water.cells.cells()) {
+    Vector3 x{};
+    const Point<D> c = water.cells.centre(cell.index);
+    for (int d = 0; d < D; ++d) x[d] = c[d];
+    p[cell.slot] = pressure(x);
   }
 }
 

@@ -1,6 +1,8 @@
 // Initial saturation, pore pressure and effective stress.
 #pragma once
 
+#include <functional>
+
 #include "coupling/world.hpp"
 
 namespace polder::coupling {
@@ -16,6 +18,10 @@ void set_saturation(World<D>& world);
 // air the pressure of the cells must have been set.
 template <int D>
 void set_initial_stress(World<D>& world);
+
+// Pore pressure of saturated soil at a place at the start [Pa]: at rest below the water table (also where the
+// scene asks for steady flow, which is found from there), or the given field.
+std::function<double(const Vector3&)> initial_pressure(const Scene& scene, double unit_weight);
 
 // Pressure of the cells [Pa, slots] at rest below the water table, or the given field; where there may be
 // suction it goes on above the table.

@@ -7,6 +7,7 @@
 #include "core/error.hpp"
 #include "coupling/between_centres.hpp"
 #include "coupling/fluidisation.hpp"
+#include "coupling/point_water.hpp"
 #include "coupling/quantities.hpp"
 #include "coupling/simulation_run.hpp"
 #include "mpm/point_stencil.hpp"
@@ -23,6 +24,11 @@ int axis_of(const std::string& quantity) {
 }
 
 }  // namespace
+
+template <int D>
+void Simulation::Run<D>::look_at_cells() const {
+  if (world->pore_water && world->pore_water->points) find_cells_of_points(*world, time);
+}
 
 template <int D>
 long Simulation::Run<D>::particles() const {
@@ -69,6 +75,7 @@ std::vector<Column> Simulation::Run<D>::history() const {
           skeleton.boundaries().reaction(static_cast<int>(b))[d]);
   }
   if (world->pore_water) {
+    look_at_cells();
     PoreWater<D>& water = *world->pore_water;
     // Points of water keep their volume whatever the pressure; what compression takes up is not among it.
     const double storage = water.layer ? 0.0 : water.storage;
@@ -164,6 +171,7 @@ double Simulation::Run<D>::quantity_of(const ParticleSet<D>& set, int p, const s
   }
   if (q == "pore_pressure") {
     if (!world->pore_water || set.wet.empty()) return 0.0;
+    if (world->pore_water->points && set.wet[p] > 0) return set.pore_pressure[p];
     if (set.wet[p] == 0)
       return !set.suction_stress.empty() && set.suction_stress[p] > 0 ? -scene.water.suction_above : 0.0;
     // Cell value plus the gradient's share, from the four (eight) cells around the point that hold water.
@@ -174,6 +182,7 @@ double Simulation::Run<D>::quantity_of(const ParticleSet<D>& set, int p, const s
   if (q == "porosity") return 1 - set.mass[p] / (set.density_solid * set.volume[p]);
   if (q == "saturation") {
     const double own = set.pore_water.empty() ? 0.0 : set.pore_water[p] / scene.water.density;
+    if (world->pore_water && world->pore_water->points && !set.wet.empty() && set.wet[p] > 0) return 1.0;
     if (!world->pore_water || !world->pore_water->layer || set.wet.empty()) return own;
     // In two layers the pores hold what the points of water around bring, too.
     const WaterLayer<D>& layer = *world->pore_water->layer;
@@ -189,6 +198,8 @@ double Simulation::Run<D>::quantity_of(const ParticleSet<D>& set, int p, const s
     if (q == "cohesion") return std::isfinite(strength.cohesion) ? strength.cohesion : 0.0;
     return strength.friction * 180 / std::numbers::pi;
   }
+  if (q == "water_velocity")
+    return vector([&](int d) { return set.water_velocity[d].empty() ? 0.0 : set.water_velocity[d][p]; });
   if (q == "conductivity") return set.conductivity.empty() ? 0.0 : set.conductivity[p];
   if (q == "volume") return set.volume[p];
   if (q == "material") return set.material;
@@ -243,6 +254,7 @@ Profile Simulation::Run<D>::profile(const Measure& m) const {
   };
   if (m.kind == Measure::Kind::cells) {
     if (!world->pore_water) return result;
+    look_at_cells();
     const PoreWater<D>& water = *world->pore_water;
     for (const auto& cell : water.cells.cells()) {
       const Point<D> centre = water.cells.centre(cell.index);
@@ -269,6 +281,7 @@ template <int D>
 double Simulation::Run<D>::cell_quantity(const Vector3& at, const std::string& quantity) const {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (!world->pore_water) return kNone;
+  look_at_cells();
   const PoreWater<D>& water = *world->pore_water;
   const Grid<D>& grid = world->skeleton.grid();
   if (quantity == "pore_pressure_interpolated") {
@@ -294,7 +307,9 @@ PointFrame Simulation::Run<D>::points(const std::vector<std::string>& fields) co
     FieldView v;
     v.name = name;
     const bool stress = name == "effective_stress" || name == "recovered_stress";
-    v.components = name == "displacement" || name == "velocity" ? 3 : stress ? 6 : 1;
+    v.components = name == "displacement" || name == "velocity" || name == "water_velocity" ? 3
+                   : stress                                                                 ? 6
+                                                                                            : 1;
     f.fields.push_back(std::move(v));
   }
   int number = 0;
@@ -347,6 +362,7 @@ PointFrame Simulation::Run<D>::water_points() const {
 }
 
 #define POLDER_INSTANTIATE(D)                                                                      \
+  template void Simulation::Run<D>::look_at_cells() const;                                         \
   template long Simulation::Run<D>::particles() const;                                             \
   template std::vector<Column> Simulation::Run<D>::history() const;                                \
   template int Simulation::Run<D>::probe_particle(const Vector3&) const;                           \

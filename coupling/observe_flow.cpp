@@ -81,6 +81,7 @@ template <int D>
 std::vector<std::pair<double, double>> Simulation::Run<D>::phreatic_line() const {
   std::vector<std::pair<double, double>> line;
   if (!world->pore_water || D != 2) return line;
+  look_at_cells();
   if constexpr (D == 2)
     if (world->pore_water->unsaturated) {
       const PoreWater<D>& w = *world->pore_water;
@@ -112,6 +113,7 @@ FlowNet Simulation::Run<D>::flow_net() const {
   FlowNet net;
   if constexpr (D == 2) {
     if (!world->pore_water) return net;
+    look_at_cells();
     const PoreWater<D>& water = *world->pore_water;
     const fdm::StreamFunction psi =
         water.unsaturated
@@ -138,6 +140,7 @@ CellFrame Simulation::Run<D>::water_cells() const {
   f.corners_per_cell = ipow(2, D);
   f.fields = {{"pore_pressure", 1, {}}, {"head", 1, {}}, {"fill", 1, {}}};
   if (!world->pore_water) return f;
+  look_at_cells();
   const PoreWater<D>& water = *world->pore_water;
   if (water.unsaturated) f.fields.push_back({"saturation", 1, {}});
   const Grid<D>& grid = world->skeleton.grid();

@@ -7,6 +7,7 @@
 #include "core/threads.hpp"
 #include "coupling/explicit_water.hpp"
 #include "coupling/initial_state.hpp"
+#include "coupling/point_water.hpp"
 #include "coupling/stopwatch.hpp"
 #include "coupling/two_layer.hpp"
 #include "coupling/unsaturated.hpp"
@@ -178,12 +179,13 @@ void update_water_cells(World<D>& world, double end) {
     update_unsaturated_cells(world);
   else
     w.pressure.refresh();
-  if (!w.layer) seal_walls(world);
+  if (!w.layer && !w.points) seal_walls(world);
 }
 
 template <int D>
 void push_by_pressure(World<D>& world) {
   PoreWater<D>& w = *world.pore_water;
+  if (w.points) return push_by_points(world);
   w.node_gradient.resize(static_cast<std::size_t>(world.skeleton.grid().slots()) * 4);
   node_gradient(w, w.pushing_pressure(), fdm::BoundaryValues::present, w.node_gradient);
   pressure_push(world.skeleton, w.node_gradient, 1.0, w.acceleration);

@@ -1,11 +1,13 @@
-// Pore water: what a wet world owns besides its skeleton. In all formulations pressure lives in the grid's
-// cells; `layer` is there where the water has points of its own.
+// Pore water: what a wet world owns besides its skeleton. Pressure lives in the grid's cells; `layer` is
+// there where the water has points of its own. Only with `points` the skeleton's own points carry pressure
+// and water, and cells are found from them for those who look.
 //
 // A scene without retention curves is saturated wherever it is wet: `pressure` is solved for, `unsaturated`
 // is not there and no curve is ever evaluated. With retention curves `unsaturated` is solved for instead; all
 // porous soil then belongs to its cells, and points carry the degree of saturation and the suction stress.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -77,6 +79,42 @@ struct VolumeFeedback {
   Reals rate;             // work space of the active cells [m3/s]
 };
 
+// A node on a side of the grid through which water may pass.
+struct SideNode {
+  int slot, axis, outward, boundary;  // the last: number in Scene::water_boundaries
+  double height;                      // [m]
+};
+
+// What water on the skeleton's points needs (point_water.hpp).
+template <int D>
+struct PointWater {
+  PointWater(bool relative_inertia, mpm::BoundarySet<D> walls)
+      : relative_inertia(relative_inertia), walls(std::move(walls)) {}
+
+  bool relative_inertia;  // points carry a velocity of the water
+  mpm::Transfer<D> transfer;
+  mpm::BoundarySet<D> walls;  // of the water
+  std::vector<SideNode> sides;
+  std::uint64_t revision = 0;  // of the grid that the nodal fields belong to
+  // Nodes: sums of mpm::scatter_pore_water [slots * 8]; velocities of the water before and after the step,
+  // and as its points' momenta give them; flow relative to the grains; trial velocity of the grains under
+  // their boundaries [slots * 4].
+  Reals sums, velocity_old, velocity, mapped, flow, grains;
+  std::vector<Reals> volume;  // of the points before they move, by body
+  std::vector<Reals> rate;    // of them: volume of soil gained and water lost by a unit of volume in the step
+  std::vector<std::array<double, 2>> parts;  // work space
+  // Mixed quadrature, over slots of cells: full of points, their mean pressure, rate at their centres; the
+  // points' pressures, by body, while those of full cells are set aside.
+  std::vector<std::uint8_t> full;
+  Reals cell_pressure, cell_rate;
+  std::vector<Reals> pushing;
+  double time = 0;                // that the pressures at the sides belong to [s]
+  bool held = false;              // by the soil, while it relaxes
+  bool cells_found = false;       // cells are those of the points as they are
+  const char* limit_reason = "";  // of PoreWater::explicit_limit, which is that of the whole step here
+  fdm::Discharge discharge;
+};
+
 template <int D>
 struct PoreWater {
   PoreWater(const Grid<D>& grid, Space space, const fdm::WaterProperties<D>& properties)
@@ -86,6 +124,7 @@ struct PoreWater {
   fdm::PressureField<D> pressure;                    // of saturated scenes
   std::unique_ptr<UnsaturatedWater<D>> unsaturated;  // of the others
   std::unique_ptr<WaterLayer<D>> layer;              // where water has points of its own
+  std::unique_ptr<PointWater<D>> points;             // where it is on the skeleton's
   fdm::WaterConditions<D> conditions;
   // Cells (slots): soil's share, its porosity, its saturated conductivity over unit weight. Nodes (slots * 4
   // or slots).
@@ -109,6 +148,7 @@ struct PoreWater {
   const Reals& pushing_pressure() const { return unsaturated ? unsaturated->pushing : pressure.pressure(); }
   const fdm::Discharge& discharge() {
     if (layer) return layer->discharge;
+    if (points) return points->discharge;
     return unsaturated ? unsaturated->field.discharge() : pressure.discharge();
   }
   const char* solver_name() const {

@@ -19,7 +19,9 @@ const std::vector<Quantity>& particle_quantities() {
       {"deviatoric_stress", "Pa"}, {"deviatoric_strain", "-"},
       {"porosity", "-"},           {"saturation", "-"},
       {"cohesion", "Pa"},          {"friction_angle", "deg"},
-      {"conductivity", "m/s"},
+      {"conductivity", "m/s"},     {"water_velocity", "m/s"},
+      {"water_velocity_x", "m/s"}, {"water_velocity_y", "m/s"},
+      {"water_velocity_z", "m/s"},
   };
   return list;
 }
@@ -44,6 +46,7 @@ const std::vector<Quantity>& frame_quantities() {
       {"cohesion", "Pa"},
       {"friction_angle", "deg"},
       {"conductivity", "m/s"},
+      {"water_velocity", "m/s"},
       {"volume", "m3"},
       {"body", "-"},
       {"material", "-"},

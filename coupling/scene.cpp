@@ -26,9 +26,9 @@ const std::vector<Formulation>& formulations() {
        "MPM-FDM of Higo et al. 2010, 2015, with projected pressure"},
       {"higo", C::cells, I::neglected, P::compressible, S::unsaturated, true,
        "MPM-FDM of Higo et al. 2010, 2015 with explicit pressure"},
-      {"u-p", C::skeleton, I::neglected, P::compressible, S::saturated, false,
+      {"u-p", C::skeleton, I::neglected, P::compressible, S::saturated, true,
        "Zhang et al. 2009; Zabala & Alonso 2011"},
-      {"v-w", C::skeleton, I::kept, P::compressible, S::saturated, false,
+      {"v-w", C::skeleton, I::kept, P::compressible, S::saturated, true,
        "Jassim et al. 2013; sequence of Verruijt 2010"},
       {"three-phase", C::skeleton, I::neglected, P::compressible, S::three_phase, false, "Yerro et al. 2015"},
       {"two-layer", C::particles, I::kept, P::projected, S::saturated, true, "Bandara & Soga 2015"},
@@ -65,6 +65,11 @@ bool Scene::fluidises() const {
 bool Scene::drag_follows_flow() const {
   return std::any_of(materials.begin(), materials.end(),
                      [](const Material& m) { return m.porosity > 0 && m.drag_law != DragLaw::darcy; });
+}
+
+bool Scene::on_points() const {
+  const Formulation* f = find_formulation(formulation);
+  return f != nullptr && f->carrier == WaterCarrier::skeleton;
 }
 
 bool Scene::kozeny_carman() const {

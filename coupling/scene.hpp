@@ -71,6 +71,11 @@ enum class Transfer {
   tpic
 };  // particle velocity: FLIP/PIC blend, affine, Taylor (velocity gradient)
 enum class LockingCure { automatic, none, cell_average };
+// Drag between grains and water by the velocities of the last step, or implicitly by those of this one.
+enum class DragStep { implicit, by_last_velocities };
+// Points of one cell share their mean head; or each has its own pressure; or full cells are integrated at
+// their centre (point_quadrature.hpp).
+enum class PointPressure { cell_mean, points, mixed };
 
 struct NumericsSpec {
   StressOrder order = StressOrder::musl;
@@ -82,6 +87,9 @@ struct NumericsSpec {
   Transfer water_transfer = Transfer::flip;
   double water_flip = 0.99;
   LockingCure locking = LockingCure::automatic;
+  DragStep drag = DragStep::implicit;  // where points carry soil and water with velocities of their own
+  PointPressure point_pressure = PointPressure::cell_mean;  // where it is at the points
+  bool smooth_rates = false;        // the change of volume that it follows is smoothed over the nodes
   double courant = 0.5;             // step as a share of the limit of the skeleton wave [-]
   std::optional<double> time_step;  // fixed step [s]; warned about or refused beyond the limit
   double rhie_chow = 0.05;          // chi [-]
@@ -375,6 +383,7 @@ struct Scene {
   bool layered() const;            // water has points of its own
   bool fluidises() const;          // some material may lose contact between its grains
   bool drag_follows_flow() const;  // some drag law depends on more than the soil
+  bool on_points() const;          // water is on the skeleton's points, with its pressure
   bool kozeny_carman() const;  // conductivities follow the porosity, those of all porous materials or of none
   std::vector<mpm::MaterialParameters> skeleton_materials() const;
   bool operator==(const Scene&) const = default;

@@ -10,6 +10,7 @@
 #include "coupling/explicit_water.hpp"
 #include "coupling/initial_state.hpp"
 #include "coupling/one_layer.hpp"
+#include "coupling/point_water.hpp"
 #include "coupling/simulation_run.hpp"
 #include "coupling/step_limit.hpp"
 #include "coupling/stopwatch.hpp"
@@ -63,6 +64,7 @@ Simulation::Run<D>::Run(const Scene& s) : world(build_world<D>(s)) {
       set_initial_stress(*world);
     else
       wet_points(*world);
+    if (water.points) set_point_water(*world);
   }
   audit = std::make_unique<Audit<D>>(*world);
   const Totals t = audit->totals(*world);
@@ -94,7 +96,8 @@ std::pair<double, const char*> Simulation::Run<D>::chosen_step(int of_stage, dou
   const Stage& spec = scene.stages[of_stage];
   if (!world->pore_water || !world->pore_water->compressible || !spec.water_flows || spec.relaxes())
     return {share * h / wave, scene.bodies.empty() ? "surface wave" : "skeleton wave"};
-  const MotionLimit limit = combined_limit(explicit_limit(*world, time), h, wave);
+  const MotionLimit limit = world->pore_water->points ? point_water_limit(*world)
+                                                      : combined_limit(explicit_limit(*world, time), h, wave);
   return {share * limit.dt, limit.reason};
 }
 
@@ -167,9 +170,10 @@ void Simulation::Run<D>::step_motion() {
     blend_for_step(*world, dt, courant_share(stage) * h / wave_speed);
   {
     Stopwatch mechanics(timing.mechanics);
-    const mpm::MoveResult moved = !world->pore_water         ? step_dry(*world, in)
-                                  : world->pore_water->layer ? step_two_layer(*world, in, steps)
-                                                             : step_one_layer(*world, in, steps);
+    const mpm::MoveResult moved = !world->pore_water          ? step_dry(*world, in)
+                                  : world->pore_water->layer  ? step_two_layer(*world, in, steps)
+                                  : world->pore_water->points ? step_point_water(*world, in, steps)
+                                                              : step_one_layer(*world, in, steps);
     speed = moved.largest_speed;
   }
   {
@@ -222,6 +226,7 @@ void Simulation::Run<D>::end_stage(const std::string& by) {
       for (int d = 0; d < D; ++d) {
         if (ended.reset_displacement) set.initial_position[d][p] = set.position[d][p];
         if (ended.reset_velocity) set.velocity[d][p] = 0;
+        if (ended.reset_velocity && !set.water_velocity[d].empty()) set.water_velocity[d][p] = 0;
       }
       if (ended.reset_displacement && strain >= 0) set.state[strain][p] = 0;
     }
@@ -328,6 +333,15 @@ void Simulation::Run<D>::visit_water(StateVisitor& v) {
       v.reals("fluidised_" + std::to_string(b), layer.fluidised[b]);
     v.number("water_added", layer.added), v.number("water_removed", layer.removed);
     if (v.reading()) layer.fluid.follow_grid();
+  }
+  if (water.points) {  // the points' own fields say all; cells follow from them
+    v.number("outflow", water.outflow), v.number("storage", water.storage);
+    v.number("explicit_limit", water.explicit_limit.dt);
+    if (!v.reading()) return;
+    water.pressure.carry();
+    water.points->cells_found = false;
+    find_cells_of_points(*world, time);
+    return;
   }
   UnsaturatedWater<D>* unsaturated = water.unsaturated.get();
   Reals pressure = water.pore_pressure(), saturation, points, active, travel;

@@ -98,6 +98,7 @@ struct Simulation::Run final : Simulation::Base {
   StabilityTrial try_reduced_strength(double factor, const StabilityOptions& options) override;
 
  private:
+  void look_at_cells() const;  // before cells are read: those of points that carry the pressure are found
   void begin_stage();
   void step_motion();
   void visit_water(StateVisitor& visitor);

@@ -8,6 +8,7 @@
 #include "coupling/body_shape.hpp"
 #include "coupling/explicit_water.hpp"
 #include "coupling/initial_state.hpp"
+#include "coupling/point_water.hpp"
 #include "coupling/two_layer.hpp"
 #include "coupling/world.hpp"
 
@@ -91,6 +92,7 @@ class Patch {
   MotionLimit expected() {
     const double h = world_->skeleton.grid().spacing();
     if (!world_->pore_water || !world_->pore_water->compressible) return {h / wave_speed_, "skeleton wave"};
+    if (world_->pore_water->points) return point_water_limit(*world_);
     return combined_limit(explicit_limit(*world_, 0.0), h, wave_speed_);
   }
 
@@ -107,6 +109,8 @@ class Patch {
         step_dry(*world_, in);
       else if (world_->pore_water->layer)
         step_two_layer(*world_, in, 1);
+      else if (world_->pore_water->points)
+        step_point_water(*world_, in, 1);
       else
         step_one_layer(*world_, in, 1);
       const Totals t = audit_->totals(*world_);
@@ -139,6 +143,9 @@ class Patch {
         }
       }
       for (Reals& c : set.affine) std::fill(c.begin(), c.end(), 0.0);
+      std::fill(set.pore_pressure.begin(), set.pore_pressure.end(), 0.0);
+      for (int d = 0; d < D; ++d)
+        if (!set.water_velocity[d].empty()) set.water_velocity[d] = set.velocity[d];
     }
     if (world_->pore_water) {
       Reals& p = world_->pore_water->pressure.pressure();

@@ -8,6 +8,7 @@
 #include "coupling/drag_exchange.hpp"
 #include "coupling/fluidisation.hpp"
 #include "coupling/initial_state.hpp"
+#include "coupling/point_water.hpp"
 #include "coupling/stopwatch.hpp"
 #include "fdm/mixture_flow.hpp"
 
@@ -277,14 +278,18 @@ mpm::MoveResult step_two_layer(World<D>& world, const StepInput& in, long step) 
 
 template <int D>
 HeldWater<D>::HeldWater(World<D>& world) : world_(world) {
-  if (!world.pore_water || !world.pore_water->layer) return;
+  if (!world.pore_water) return;
+  if (world.pore_water->points) hold_point_water(world, true);
+  if (!world.pore_water->layer) return;
   world.pore_water->layer->held = true;
   give(0.0, world.scene.water.density);
 }
 
 template <int D>
 HeldWater<D>::~HeldWater() {
-  if (!world_.pore_water || !world_.pore_water->layer) return;
+  if (!world_.pore_water) return;
+  if (world_.pore_water->points) hold_point_water(world_, false);
+  if (!world_.pore_water->layer) return;
   world_.pore_water->layer->held = false;
   give(world_.scene.water.density, 0.0);
 }

@@ -37,6 +37,24 @@ void update_velocities(Transfer<D>& transfer, double flip, const Reals& v_old, c
 }
 
 template <int D>
+void scatter_pore_water(Transfer<D>& transfer, double density, bool kozeny_carman, Reals& sums) {
+  POLDER_SIMD_CALL(scatter_pore_water, transfer, density, kozeny_carman);
+  sum_tiles(transfer, Transfer<D>::kSum, sums);
+}
+
+template <int D>
+void update_pore_velocities(Transfer<D>& transfer, double density, double flip, const Reals& w_old,
+                            const Reals& w_new, Reals* momentum) {
+  POLDER_SIMD_CALL(update_pore_velocities, transfer, density, flip, w_old, w_new, momentum != nullptr);
+  if (momentum != nullptr) sum_tiles(transfer, Transfer<D>::kVector, *momentum);
+}
+
+template <int D>
+void gather_expelled(Transfer<D>& transfer, double dt, const Reals& flow, bool cell_average) {
+  POLDER_SIMD_CALL(gather_expelled, transfer, dt, flow, cell_average);
+}
+
+template <int D>
 MoveResult update_stress_and_move(Transfer<D>& transfer, const MoveOptions& options, const Reals* v_old,
                                   const Reals& v_move, const Reals& v_gradient) {
   return POLDER_SIMD_CALL(update_stress_and_move, transfer, options, v_old, v_move, v_gradient);
@@ -52,13 +70,16 @@ std::shared_ptr<const void> make_law_handle(int dimension, const MaterialParamet
   return POLDER_SIMD_CALL(make_law_handle, dimension, material, plastic);
 }
 
-#define POLDER_INSTANTIATE(D)                                                                   \
-  template void scatter_state<D>(Transfer<D>&, AffineKind, Reals&);                             \
-  template void velocities_of<D>(const Transfer<D>&, const Reals&, Reals&);                     \
-  template void scatter_cells<D>(Transfer<D>&, Reals&);                                         \
-  template void update_velocities<D>(Transfer<D>&, double, const Reals&, const Reals&, Reals*); \
-  template MoveResult update_stress_and_move<D>(Transfer<D>&, const MoveOptions&, const Reals*, \
-                                                const Reals&, const Reals&);                    \
+#define POLDER_INSTANTIATE(D)                                                                                \
+  template void scatter_state<D>(Transfer<D>&, AffineKind, Reals&);                                          \
+  template void velocities_of<D>(const Transfer<D>&, const Reals&, Reals&);                                  \
+  template void scatter_cells<D>(Transfer<D>&, Reals&);                                                      \
+  template void update_velocities<D>(Transfer<D>&, double, const Reals&, const Reals&, Reals*);              \
+  template void scatter_pore_water<D>(Transfer<D>&, double, bool, Reals&);                                   \
+  template void update_pore_velocities<D>(Transfer<D>&, double, double, const Reals&, const Reals&, Reals*); \
+  template void gather_expelled<D>(Transfer<D>&, double, const Reals&, bool);                                \
+  template MoveResult update_stress_and_move<D>(Transfer<D>&, const MoveOptions&, const Reals*,              \
+                                                const Reals&, const Reals&);                                 \
   template void sum_tiles<D>(Transfer<D>&, int, Reals&);
 POLDER_INSTANTIATE(2)
 POLDER_INSTANTIATE(3)

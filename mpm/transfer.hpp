@@ -74,6 +74,23 @@ template <int D>
 void update_velocities(Transfer<D>& transfer, double flip, const Reals& v_old, const Reals& v_new,
                        Reals* momentum);
 
+// Water in the pores of points that carry its pressure (and, with its full inertia, its velocity w) to nodes
+// [slots * kSum], in the lanes of scatter_state(): mass of the water, momentum, force sum V p grad N of the
+// pore pressure on soil and water together, volume of soil over conductivity [m2 s]. density: of water.
+// kozeny_carman: conductivity is the points' times n^3 / (1 - n)^2.
+template <int D>
+void scatter_pore_water(Transfer<D>& transfer, double density, bool kozeny_carman, Reals& sums);
+
+// update_velocities() for that water.
+template <int D>
+void update_pore_velocities(Transfer<D>& transfer, double density, double flip, const Reals& w_old,
+                            const Reals& w_new, Reals* momentum);
+
+// Of the flow of water relative to the grains at the nodes, q [slots * kVector], dt div q at the points into
+// ParticleSet::expelled; cell_average: as the volumetric strain in MoveOptions.
+template <int D>
+void gather_expelled(Transfer<D>& transfer, double dt, const Reals& flow, bool cell_average);
+
 struct MoveOptions {
   double dt = 0;
   AffineKind affine = AffineKind::none;

@@ -1,8 +1,8 @@
-// Nodes to particles: velocities, velocity gradients, stress, motion.
+// Nodes to particles: velocity gradients, stress, motion.
 #include <algorithm>
 
 #include "core/threads.hpp"
-#include "mpm/kernels/tile.hpp"
+#include "mpm/kernels/gather_pack.hpp"
 #include "mpm/material/law.hpp"
 #include "mpm/material/rotation.hpp"
 
@@ -12,171 +12,6 @@ namespace {
 using mpm::AffineKind;
 using mpm::MoveOptions;
 using mpm::MoveResult;
-
-// A tile holds two vector fields a and b: 2D {ax, ay, bx, by}, 3D {ax, ay, az, -, bx, by, bz, -}.
-template <int D>
-inline constexpr int kPair = D == 2 ? 4 : 8;
-template <int D>
-inline constexpr int kSecond = D == 2 ? 2 : 4;
-
-template <int D>
-struct Gathered {
-  Pack a[D], b[D];       // sum N a, sum N b
-  Pack gradient[D * D];  // db_i/dx_j [1/s]
-  Pack moment[D * D];    // sum N b_i (x_node - x_p)_j / sum N (x_node - x_p)_j^2 [1/s], affine only
-};
-
-template <int D>
-void load_pair(const Grid<D>& grid, int block, const Reals& a, const Reals& b, double* tile) {
-  constexpr int kVector = mpm::Transfer<D>::kVector;
-  if constexpr (D == 2) {
-    // Interleave by loading each field with a stride of four and half the width.
-    alignas(64) double other[mpm::Transfer<D>::kTileNodes * 4];
-    load_tile<D, kVector, kPair<D>>(grid, block, a.data(), tile);
-    if (&a != &b) load_tile<D, kVector, kPair<D>>(grid, block, b.data(), other);
-    const double* second = &a != &b ? other : tile;
-    for (int i = 0; i < mpm::Transfer<D>::kTileNodes; ++i)
-      tile[i * 4 + 2] = second[i * 4], tile[i * 4 + 3] = second[i * 4 + 1];
-  } else {
-    load_tile<D, kVector, kPair<D>>(grid, block, a.data(), tile);
-    load_tile<D, kVector, kPair<D>>(grid, block, b.data(), tile + 4);
-  }
-}
-
-enum class Want { values, gradient, moment };
-
-template <int D, Want kWant>
-POLDER_INLINE void gather_pack(const double* tile, const BlockFrame<D>& frame, const TileStencil<D>& s,
-                               const Pack* position, double h, Gathered<D>& out) {
-  constexpr int kTile = mpm::Transfer<D>::kTileSide, kW = kPair<D>;
-  constexpr bool kGradient = kWant != Want::values, kMoment = kWant == Want::moment;
-  alignas(64) double w[D][3][kLanes], g[D][3][kLanes], r[D][3][kLanes];
-  for (int d = 0; d < D; ++d)
-    for (int a = 0; a < 3; ++a) {
-      store(w[d][a], s.axis[d].weight[a]);
-      if constexpr (kGradient) store(g[d][a], s.axis[d].slope[a] * frame.inverse_h);
-      if constexpr (kMoment) store(r[d][a], s.axis[d].weight[a] * s.distance(frame, d, a, position[d], h));
-    }
-  Reg<kW> value[kLanes], slope[kGradient ? D : 1][kLanes], moment[kMoment ? D : 1][kLanes];
-  const auto lane = [&](int l) __attribute__((always_inline)) {
-    const double* first = tile + s.start[l] * kW;
-    Reg<kW> v{}, dx{}, dy{}, dz{}, mx{}, my{}, mz{};
-    for (int k = 0; k < (D == 3 ? 3 : 1); ++k) {
-      Reg<kW> pv{}, px{}, py{}, qx{}, qy{};  // of this plane
-      for (int j = 0; j < 3; ++j) {
-        const double* row = first + ((D == 3 ? k * kTile : 0) + j) * kTile * kW;
-        Reg<kW> rv{}, rx{}, sx{};
-        for (int i = 0; i < 3; ++i) {
-          const Reg<kW> n = Reg<kW>::load(row + i * kW);
-          rv += n * w[0][i][l];
-          if constexpr (kGradient) rx += n * g[0][i][l];
-          if constexpr (kMoment) sx += n * r[0][i][l];
-        }
-        pv += rv * w[1][j][l];
-        if constexpr (kGradient) px += rx * w[1][j][l], py += rv * g[1][j][l];
-        if constexpr (kMoment) qx += sx * w[1][j][l], qy += rv * r[1][j][l];
-      }
-      if constexpr (D == 2) {
-        v = pv, dx = px, dy = py, mx = qx, my = qy;
-      } else {
-        const double wk = w[2][k][l];
-        v += pv * wk;
-        if constexpr (kGradient) dx += px * wk, dy += py * wk, dz += pv * g[2][k][l];
-        if constexpr (kMoment) mx += qx * wk, my += qy * wk, mz += pv * r[2][k][l];
-      }
-    }
-    value[l] = v;
-    if constexpr (kGradient) {
-      slope[0][l] = dx, slope[1][l] = dy;
-      if constexpr (D == 3) slope[2][l] = dz;
-    }
-    if constexpr (kMoment) {
-      moment[0][l] = mx, moment[1][l] = my;
-      if constexpr (D == 3) moment[2][l] = mz;
-    }
-  };
-  // In the plane what a lane gathers fits in registers, if the lanes are known at compile time. Through
-  // memory a pack would be read from pieces that have just been written, which stalls.
-  if constexpr (D == 2) {
-#pragma GCC unroll 8
-    for (int l = 0; l < kLanes; ++l) lane(l);
-  } else {
-    for (int l = 0; l < kLanes; ++l) lane(l);
-  }
-  Pack f[kW];
-  to_packs<kW>(value, f);
-  for (int d = 0; d < D; ++d) out.a[d] = f[d], out.b[d] = f[kSecond<D> + d];
-  if constexpr (kGradient)
-    for (int j = 0; j < D; ++j) {
-      to_packs<kW>(slope[j], f);
-      for (int i = 0; i < D; ++i) out.gradient[i * D + j] = f[kSecond<D> + i];
-    }
-  if constexpr (kMoment)
-    for (int j = 0; j < D; ++j) {
-      // The second moment of the weights is diagonal (tensor product, linear completeness); 0 on an
-      // interpolating node.
-      Pack second = Pack{};
-      for (int a = 0; a < 3; ++a) {
-        const Pack x = s.distance(frame, j, a, position[j], h);
-        second += s.axis[j].weight[a] * x * x;
-      }
-      const Pack inverse = select(second > 1e-10 * h * h, 1.0 / max(second, 1e-10 * h * h), Pack{});
-      to_packs<kW>(moment[j], f);
-      for (int i = 0; i < D; ++i) out.moment[i * D + j] = f[kSecond<D> + i] * inverse;
-    }
-}
-
-template <int D>
-void update_velocities_of(mpm::Transfer<D>& t, double flip, const Reals& v_old, const Reals& v_new,
-                          bool map) {
-  constexpr int kTileNodes = mpm::Transfer<D>::kTileNodes, kTile = mpm::Transfer<D>::kTileSide;
-  const Grid<D>& grid = *t.grid;
-  parallel_for_work(work_of_blocks(t), [&](int block) {
-    alignas(64) double in[kTileNodes * kPair<D>];
-    load_pair<D>(grid, block, v_old, v_new, in);
-    double* out = t.tiles.data() + static_cast<std::size_t>(block) * kTileNodes * 4;
-    if (map) std::memset(out, 0, sizeof(double) * kTileNodes * 4);
-    const BlockFrame<D> frame(grid, block);
-    for (const mpm::Body<D>& body : t.bodies) {
-      ParticleSet<D>& set = *body.particles;
-      const auto range = set.ranges[block];
-      for (int p = range.first; p < range.first + range.count; p += kLanes) {
-        Pack x[D], l[D];
-        for (int d = 0; d < D; ++d) x[d] = load(&set.position[d][p]), l[d] = load(&set.half_size[d][p]);
-        TileStencil<D> s;
-        s.set(frame, t.shape, x, l);
-        Gathered<D> q;
-        gather_pack<D, Want::values>(in, frame, s, x, grid.spacing(), q);
-        Pack v[D];
-        for (int d = 0; d < D; ++d) {
-          v[d] = flip * (load(&set.velocity[d][p]) + (q.b[d] - q.a[d])) + (1 - flip) * q.b[d];
-          store(&set.velocity[d][p], v[d]);
-        }
-        if (!map) continue;
-        const Pack solid = load(&set.mass[p]);
-        Pack mass = solid;
-        if (!set.pore_water.empty())
-          mass += load(&set.pore_water[p]) *
-                  (select(solid > 0, load(&set.volume[p]), Pack{}) - solid * (1 / set.density_solid));
-        Pack f[4] = {};
-        for (int d = 0; d < D; ++d) f[d] = mass * v[d];
-        Reg<4> momentum[kLanes];
-        to_nodes<4>(f, momentum);
-        alignas(64) double w[D][3][kLanes];
-        for (int d = 0; d < D; ++d)
-          for (int a = 0; a < 3; ++a) store(w[d][a], s.axis[d].weight[a]);
-        for (int lane = 0; lane < kLanes; ++lane)
-          for (int k = 0; k < (D == 3 ? 3 : 1); ++k)
-            for (int j = 0; j < 3; ++j) {
-              double* to = out + (s.start[lane] + ((D == 3 ? k * kTile : 0) + j) * kTile) * 4;
-              const double wj = w[1][j][lane] * (D == 3 ? w[D - 1][k][lane] : 1.0);
-              const Reg<4> row = momentum[lane] * wj;
-              for (int i = 0; i < 3; ++i) (Reg<4>::load(to + i * 4) + row * w[0][i][lane]).store(to + i * 4);
-            }
-      }
-    }
-  });
-}
 
 struct BlockResult {
   double far = 0, fast = 0;  // largest displacement along an axis [cells], largest squared speed
@@ -470,12 +305,6 @@ MoveResult move_any(mpm::Transfer<D>& t, const MoveOptions& o, const Reals* v_ol
 
 }  // namespace
 
-void update_velocities(mpm::Transfer<2>& t, double f, const Reals& a, const Reals& b, bool m) {
-  update_velocities_of(t, f, a, b, m);
-}
-void update_velocities(mpm::Transfer<3>& t, double f, const Reals& a, const Reals& b, bool m) {
-  update_velocities_of(t, f, a, b, m);
-}
 MoveResult update_stress_and_move(mpm::Transfer<2>& t, const MoveOptions& o, const Reals* a, const Reals& b,
                                   const Reals& c) {
   return move_any(t, o, a, b, c);

@@ -71,6 +71,34 @@ POLDER_INLINE void load_fields(const mpm::Transfer<D>& transfer, const ParticleS
     }
 }
 
+// The same fields of the water in saturated pores: its mass and momentum, -V sigma with sigma = -p, and
+// volume over conductivity in place of the volume.
+template <int D>
+POLDER_INLINE void load_pore_water(const mpm::Transfer<D>& transfer, double density, bool kozeny_carman,
+                                   const ParticleSet<D>& set, int p, ScatterFields<D, false>& out) {
+  constexpr int kForce = 1 + D;
+  const Pack solid = load(&set.mass[p]), wet = load(&set.wet[p]);
+  const Pack volume = select(solid > 0, wet * load(&set.volume[p]), Pack{});
+  const Pack push = volume * load(&set.pore_pressure[p]);
+  Pack f[8] = {};
+  f[0] = density * (volume - wet * solid * (1 / set.density_solid));
+  if (!set.water_velocity[0].empty())
+    for (int d = 0; d < D; ++d) f[1 + d] = f[0] * load(&set.water_velocity[d][p]);
+  if (D == 2 && transfer.space == Space::axisymmetric) f[kForce] = push / load(&set.position[0][p]);
+  Pack conductivity = load(&set.conductivity[p]);
+  if (kozeny_carman) {
+    const Pack grains = solid * (1 / set.density_solid) / select(volume > 0, volume, broadcast(1.0));
+    conductivity *= (1.0 - grains) * (1.0 - grains) * (1.0 - grains) / (grains * grains);
+  }
+  f[mpm::Transfer<D>::kVolume] = select(conductivity > 0, volume / conductivity, Pack{});
+  to_nodes<8>(f, out.value);
+  for (int d = 0; d < D; ++d) {
+    Pack s[8] = {};
+    s[kForce + d] = push;
+    to_nodes<8>(s, out.stress[d]);
+  }
+}
+
 POLDER_INLINE void add(double* node, const Reg<8>& value) {
   (Reg<8>::load(node) + value).store(node);
 }
@@ -119,8 +147,9 @@ POLDER_INLINE void scatter_pack(const TileStencil<D>& s, const double (&w)[D][3]
   }
 }
 
-template <int D, bool kAffine>
-void scatter_blocks(mpm::Transfer<D>& transfer) {
+// load(set, p, fields): what goes to the nodes; has(set): whether a body has any of it.
+template <int D, bool kAffine, class Load, class Has>
+void scatter_blocks(mpm::Transfer<D>& transfer, const Load& load_of, const Has& has) {
   constexpr int kTileNodes = mpm::Transfer<D>::kTileNodes;
   const Grid<D>& grid = *transfer.grid;
   const double h = grid.spacing();
@@ -130,6 +159,7 @@ void scatter_blocks(mpm::Transfer<D>& transfer) {
     const BlockFrame<D> frame(grid, block);
     for (const mpm::Body<D>& body : transfer.bodies) {
       const ParticleSet<D>& set = *body.particles;
+      if (!has(set)) continue;
       const auto range = set.ranges[block];
       for (int p = range.first; p < range.first + range.count; p += kLanes) {
         Pack x[D], l[D];
@@ -144,11 +174,29 @@ void scatter_blocks(mpm::Transfer<D>& transfer) {
             if constexpr (kAffine) store(r[d][a], s.axis[d].weight[a] * s.distance(frame, d, a, x[d], h));
           }
         ScatterFields<D, kAffine> f;
-        load_fields<D, kAffine>(transfer, set, p, f);
+        load_of(set, p, f);
         scatter_pack<D, kAffine>(s, w, g, r, f, tile);
       }
     }
   });
+}
+
+template <int D, bool kAffine>
+void scatter_skeleton(mpm::Transfer<D>& transfer) {
+  scatter_blocks<D, kAffine>(
+      transfer,
+      [&](const ParticleSet<D>& set, int p, ScatterFields<D, kAffine>& f)
+          __attribute__((always_inline)) { load_fields<D, kAffine>(transfer, set, p, f); },
+      [](const ParticleSet<D>&) { return true; });
+}
+
+template <int D>
+void scatter_water(mpm::Transfer<D>& transfer, double density, bool kozeny_carman) {
+  scatter_blocks<D, false>(
+      transfer,
+      [&](const ParticleSet<D>& set, int p, ScatterFields<D, false>& f)
+          __attribute__((always_inline)) { load_pore_water<D>(transfer, density, kozeny_carman, set, p, f); },
+      [](const ParticleSet<D>& set) { return !set.pore_pressure.empty(); });
 }
 
 // Overlap of the particle's box with cells along one axis: the lower cell and the share of the box inside it.
@@ -212,15 +260,21 @@ void scatter_cells_of(mpm::Transfer<D>& transfer) {
 
 void scatter_state(mpm::Transfer<2>& t, AffineKind a) {
   if (a == AffineKind::none)
-    scatter_blocks<2, false>(t);
+    scatter_skeleton<2, false>(t);
   else
-    scatter_blocks<2, true>(t);
+    scatter_skeleton<2, true>(t);
 }
 void scatter_state(mpm::Transfer<3>& t, AffineKind a) {
   if (a == AffineKind::none)
-    scatter_blocks<3, false>(t);
+    scatter_skeleton<3, false>(t);
   else
-    scatter_blocks<3, true>(t);
+    scatter_skeleton<3, true>(t);
+}
+void scatter_pore_water(mpm::Transfer<2>& t, double density, bool kozeny_carman) {
+  scatter_water<2>(t, density, kozeny_carman);
+}
+void scatter_pore_water(mpm::Transfer<3>& t, double density, bool kozeny_carman) {
+  scatter_water<3>(t, density, kozeny_carman);
 }
 void scatter_cells(mpm::Transfer<2>& t) {
   scatter_cells_of(t);

@@ -1,0 +1,378 @@
+#include "coupling/point_water.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/threads.hpp"
+#include "coupling/point_pressure.hpp"
+#include "coupling/point_quadrature.hpp"
+#include "coupling/stopwatch.hpp"
+#include "coupling/two_layer.hpp"
+
+namespace polder::coupling {
+namespace {
+
+constexpr int kStride = 4;
+constexpr double kNoWater = 1e-26;  // mass of a node, as a share of a cell of water, that feels no force
+constexpr int kLimitInterval = 64;  // steps between two looks at the step limit
+
+template <int D>
+constexpr int kForce = 1 + D;  // first force lane of a node's sums
+template <int D>
+constexpr int kVolume = mpm::Transfer<D>::kVolume;
+
+// Nodal sums of one node of soil and of its water.
+template <int D>
+struct NodeSums {
+  const double* soil;
+  const double* water;
+  NodeSums(const World<D>& world, int i)
+      : soil(&world.skeleton.sums()[static_cast<std::size_t>(i) * 8]),
+        water(&world.pore_water->points->sums[static_cast<std::size_t>(i) * 8]) {}
+};
+
+template <int D>
+double water_floor(const World<D>& world) {
+  return kNoWater * world.scene.water.density * std::pow(world.scene.grid.cell, D);
+}
+
+// n of the soil at a node.
+template <int D>
+double porosity_of(const NodeSums<D>& s, double density) {
+  return s.soil[kVolume<D>] > 0 ? std::min(1.0, s.water[0] / (density * s.soil[kVolume<D>])) : 0.0;
+}
+
+template <int D>
+void follow_grid(World<D>& world) {
+  PointWater<D>& w = *world.pore_water->points;
+  const Grid<D>& grid = world.skeleton.grid();
+  if (w.revision == grid.revision()) return;
+  w.revision = grid.revision();
+  w.transfer.resize();
+  for (Reals* r : {&w.velocity_old, &w.velocity, &w.mapped, &w.flow})
+    r->assign(static_cast<std::size_t>(grid.slots()) * kStride, 0.0);
+  w.walls.update(grid);
+  w.sides.clear();
+  const double slack = 1e-6 * grid.spacing();
+  for (std::size_t b = 0; b < world.scene.water_boundaries.size(); ++b) {
+    const WaterBoundary& boundary = world.scene.water_boundaries[b];
+    if (boundary.side < 0) continue;
+    const int axis = boundary.side / 2, upper = boundary.side % 2;
+    for (int i = 0; i < grid.slots(); ++i) {
+      const Index<D> index = grid.index(i);
+      if (index[axis] != (upper ? grid.cells()[axis] : 0)) continue;
+      const Point<D> x = grid.position(index);
+      bool inside = true;
+      for (int d = 0; d < D && inside; ++d) {
+        if (d == axis || !boundary.from || !boundary.to) continue;
+        inside = x[d] >= std::min((*boundary.from)[d], (*boundary.to)[d]) - slack &&
+                 x[d] <= std::max((*boundary.from)[d], (*boundary.to)[d]) + slack;
+      }
+      if (!inside) continue;
+      std::erase_if(w.sides, [&](const SideNode& n) { return n.slot == i && n.axis == axis; });
+      w.sides.push_back({i, axis, upper ? 1 : -1, static_cast<int>(b), x[D - 1]});
+    }
+  }
+}
+
+// Pressure that a boundary prescribes at a height [Pa]; NaN where it is closed.
+double pressure_at(const WaterBoundary& b, double height, double time, double unit_weight) {
+  constexpr double kClosed = std::numeric_limits<double>::quiet_NaN();
+  switch (b.kind) {
+    case WaterBoundary::Kind::head: {
+      const double depth = b.value.at(time) - height;
+      return depth > 0 ? unit_weight * depth : kClosed;
+    }
+    case WaterBoundary::Kind::pressure:
+      return b.value.at(time);
+    case WaterBoundary::Kind::surface:
+      return 0;
+    default:
+      return kClosed;
+  }
+}
+
+// Water at the nodes: mass, momentum and force, with that of the pressures prescribed at the sides.
+template <int D>
+void scatter_water(World<D>& world) {
+  PointWater<D>& w = *world.pore_water->points;
+  follow_grid(world);
+  const bool mixed = world.scene.numerics.point_pressure == PointPressure::mixed;
+  if (mixed) set_full_cells_aside(world);
+  mpm::scatter_pore_water(w.transfer, world.scene.water.density, world.scene.kozeny_carman(), w.sums);
+  if (mixed) add_force_of_full_cells(world);
+  mpm::velocities_of(w.transfer, w.sums, w.velocity_old);
+  for (const SideNode& n : w.sides) {
+    const double p =
+        pressure_at(world.scene.water_boundaries[n.boundary], n.height, w.time, world.unit_weight());
+    if (!std::isnan(p))
+      w.sums[static_cast<std::size_t>(n.slot) * 8 + kForce<D> + n.axis] -=
+          n.outward * p * area_of_side(world, n.slot);
+  }
+}
+
+double damped(double a, double v, double damping) {
+  return a * v > 0 ? (1 - damping) * a : a * v < 0 ? (1 + damping) * a : a;
+}
+
+// w_trial = w_old + dt (F_p / (rho_w V) + g) of nodes with water, under the walls.
+template <int D>
+void predict_water(World<D>& world, const StepInput& in, const Point<D>& gravity) {
+  PointWater<D>& w = *world.pore_water->points;
+  const double density = world.scene.water.density, floor = water_floor(world);
+  const std::vector<std::uint8_t>& walled = w.walls.held_components();
+  parallel_for(world.skeleton.grid().slots(), [&](int i) {
+    const NodeSums<D> s(world, i);
+    const bool some = s.water[0] > floor;
+    for (int d = 0; d < D; ++d) {
+      const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
+      const double old = w.velocity_old[j];
+      double a = 0;
+      if (some) a = s.water[kForce<D> + d] / (density * s.soil[kVolume<D>]) + gravity[d];
+      if (in.damping > 0 && !(walled[i] >> d & 1)) a = damped(a, old, in.damping);
+      w.velocity[j] = old + in.dt * a;
+    }
+  });
+  w.walls.apply(in.time + in.dt, in.dt, w.sums, w.velocity, false, false);
+}
+
+enum class Exchange { by_old_velocities, implicit_, locked };
+
+// Drag between the trial velocities of grains and water at each node, b = dt B / M_w,
+//   M_s (v - v~) = - M_w (w - w~) = dt B (w - v),
+// on the right hand the velocities of the last step, or those after the exchange (in closed form), or,
+// locked, B without bounds: water that is held in its soil. Where a boundary holds the grains they do not
+// give way to the water; the reaction goes into their trial velocity all the same, from where the boundary
+// takes it.
+template <int D>
+void exchange_drag(World<D>& world, double end, double dt, Exchange how) {
+  PointWater<D>& w = *world.pore_water->points;
+  mpm::Skeleton<D>& skeleton = world.skeleton;
+  const std::vector<std::uint8_t>& held = skeleton.boundaries().held_components();
+  const std::vector<std::uint8_t>& walled = w.walls.held_components();
+  const double density = world.scene.water.density, floor = water_floor(world), weight = world.unit_weight();
+  Reals& trial = skeleton.v_trial();
+  w.grains = trial;
+  skeleton.boundaries().apply(end, dt, skeleton.sums(), w.grains, false, false);
+  parallel_for(skeleton.grid().slots(), [&](int i) {
+    const NodeSums<D> s(world, i);
+    const double soil = s.soil[0], water = s.water[0], n = porosity_of(s, density);
+    if (!(soil > skeleton.mass_floor() && water > floor)) return;
+    const double b = dt * n * n * weight * s.water[kVolume<D>] / water;
+    // After an implicit exchange: shares of water and grains in each other's velocity.
+    const bool locked = how == Exchange::locked;
+    const double free = locked ? 0 : soil / (soil + b * (soil + water));
+    const double common = (1 - free) / (soil + water);
+    for (int d = 0; d < D; ++d) {
+      const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
+      const bool fixed = held[i] >> d & 1, wall = walled[i] >> d & 1;
+      double &v = trial[j], &u = w.velocity[j];
+      if (how == Exchange::by_old_velocities) {
+        const double push = b * (w.velocity_old[j] - skeleton.v_old()[j]);
+        v += water / soil * push;
+        if (!wall) u -= push;
+      } else if (wall) {
+        if (!fixed && !locked) v = (v + b * water / soil * u) / (1 + b * water / soil);
+      } else if (fixed) {
+        const double before = u;
+        u = locked ? w.grains[j] : (u + b * w.grains[j]) / (1 + b);
+        v += water / soil * (before - u);
+      } else {
+        const double momentum = soil * v + water * u, v0 = v, u0 = u;
+        v = free * v0 + common * momentum;
+        u = free * u0 + common * momentum;
+      }
+    }
+  });
+}
+
+// Velocities of the water that its divergence is taken of: as Skeleton::strain_velocity().
+template <int D>
+const Reals& water_strain_velocity(World<D>& world, const StepInput& in) {
+  PointWater<D>& w = *world.pore_water->points;
+  const mpm::SkeletonOptions& options = world.skeleton.options();
+  Reals* momentum = options.musl ? &w.mapped : nullptr;
+  mpm::update_pore_velocities(w.transfer, world.scene.water.density, options.flip, w.velocity_old, w.velocity,
+                              momentum);
+  if (!options.musl) return w.velocity;
+  parallel_for(world.skeleton.grid().slots(), [&](int i) {
+    const double mass = w.sums[static_cast<std::size_t>(i) * 8], inverse = mass > 0 ? 1 / mass : 0;
+    for (int d = 0; d < D; ++d) w.mapped[static_cast<std::size_t>(i) * kStride + d] *= inverse;
+  });
+  w.walls.apply(in.time + in.dt, in.dt, w.sums, w.mapped, false, false);
+  return w.mapped;
+}
+
+// Nothing passes a side that is closed at present, as above the level of a head.
+template <int D>
+void close_sides(World<D>& world) {
+  PointWater<D>& w = *world.pore_water->points;
+  for (const SideNode& n : w.sides)
+    if (std::isnan(
+            pressure_at(world.scene.water_boundaries[n.boundary], n.height, w.time, world.unit_weight())))
+      w.flow[static_cast<std::size_t>(n.slot) * kStride + n.axis] = 0;
+}
+
+// q = n (w - v).
+template <int D>
+void flow_of_velocities(World<D>& world, const Reals& grains, const Reals& water) {
+  PointWater<D>& w = *world.pore_water->points;
+  const double density = world.scene.water.density, floor = water_floor(world);
+  parallel_for(world.skeleton.grid().slots(), [&](int i) {
+    const NodeSums<D> s(world, i);
+    const bool some = s.water[0] > floor && s.soil[0] > world.skeleton.mass_floor();
+    const double n = some ? porosity_of(s, density) : 0.0;
+    for (int d = 0; d < D; ++d) {
+      const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
+      w.flow[j] = n * (water[j] - grains[j]);
+    }
+  });
+}
+
+// q = k / gamma_w (F_p / V + rho_w (g - a)), a the acceleration of the grains. The walls take what would
+// cross them: q + v obeys them as the velocity of water does.
+template <int D>
+void flow_by_darcy(World<D>& world, const StepInput& in, const Point<D>& gravity) {
+  PointWater<D>& w = *world.pore_water->points;
+  const mpm::Skeleton<D>& skeleton = world.skeleton;
+  const double density = world.scene.water.density, floor = water_floor(world), weight = world.unit_weight();
+  parallel_for(skeleton.grid().slots(), [&](int i) {
+    const NodeSums<D> s(world, i);
+    const bool some = s.water[0] > floor && s.soil[0] > skeleton.mass_floor();
+    const double conducted = some ? 1 / (weight * s.water[kVolume<D>]) : 0.0;  // k / (gamma_w V)
+    for (int d = 0; d < D; ++d) {
+      const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
+      const double a = (skeleton.v_new()[j] - skeleton.v_old()[j]) / in.dt;
+      const double push = s.water[kForce<D> + d] + density * s.soil[kVolume<D>] * (gravity[d] - a);
+      w.flow[j] = skeleton.v_new()[j] + (some ? conducted * push : 0.0);
+    }
+  });
+  w.walls.apply(in.time + in.dt, in.dt, w.sums, w.flow, false, false);
+  parallel_for(skeleton.grid().slots(), [&](int i) {
+    for (int d = 0; d < D; ++d) {
+      const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
+      w.flow[j] -= skeleton.v_new()[j];
+    }
+  });
+}
+
+}  // namespace
+
+template <int D>
+void add_point_water(World<D>& world) {
+  PoreWater<D>& water = *world.pore_water;
+  const Scene& scene = world.scene;
+  const bool kept = find_formulation(scene.formulation)->inertia == RelativeInertia::kept;
+  water.points = std::make_unique<PointWater<D>>(kept, water_walls<D>(scene, world.skeleton.boundaries()));
+  PointWater<D>& w = *water.points;
+  w.transfer.grid = &world.skeleton.grid();
+  w.transfer.space = scene.grid.space;
+  w.transfer.shape = scene.grid.shape;
+  for (auto& body : world.skeleton.bodies()) {
+    w.transfer.bodies.push_back({body.get(), nullptr, 0.0});
+    ParticleSet<D>& set = *body;
+    if (set.wet.empty()) continue;
+    set.group_by_cell = true;
+    set.home_cell.resize(set.slots());
+    set.pore_pressure.assign(set.slots(), 0.0);
+    set.expelled.assign(set.slots(), 0.0);
+    if (!kept) continue;
+    for (int d = 0; d < D; ++d) set.water_velocity[d] = set.velocity[d];
+    // With a velocity of its own the water is no mass of the grains.
+    for (int p = 0; p < set.slots(); ++p)
+      if (set.wet[p] > 0) set.pore_water[p] = 0;
+  }
+}
+
+template <int D>
+void push_by_points(World<D>& world) {
+  PoreWater<D>& water = *world.pore_water;
+  PointWater<D>& w = *water.points;
+  scatter_water(world);
+  const mpm::Skeleton<D>& skeleton = world.skeleton;
+  const double density = world.scene.water.density;
+  const bool all = !w.relative_inertia || w.held;  // the mixture feels all of it, grains their share
+  water.acceleration.resize(static_cast<std::size_t>(skeleton.grid().slots()) * kStride);
+  parallel_for(skeleton.grid().slots(), [&](int i) {
+    const NodeSums<D> s(world, i);
+    const double share = all ? 1 : 1 - porosity_of(s, density);
+    const double f = s.soil[0] > skeleton.mass_floor() ? share / s.soil[0] : 0.0;
+    for (int d = 0; d < kStride; ++d)
+      water.acceleration[static_cast<std::size_t>(i) * kStride + d] =
+          d < D ? f * s.water[kForce<D> + d] : 0.0;
+  });
+}
+
+template <int D>
+void hold_point_water(World<D>& world, bool held) {
+  PointWater<D>& w = *world.pore_water->points;
+  if (!w.relative_inertia) return;
+  w.held = held;
+  for (auto& body : world.skeleton.bodies()) {
+    ParticleSet<D>& set = *body;
+    if (set.pore_pressure.empty()) continue;
+    for (int p = 0; p < set.slots(); ++p) {
+      if (set.wet[p] == 0) continue;
+      set.pore_water[p] = held ? world.scene.water.density : 0;
+      for (Reals& u : set.water_velocity) u[p] = 0;
+    }
+  }
+}
+
+template <int D>
+mpm::MoveResult step_point_water(World<D>& world, const StepInput& in, long step) {
+  PoreWater<D>& water = *world.pore_water;
+  PointWater<D>& w = *water.points;
+  mpm::Skeleton<D>& skeleton = world.skeleton;
+  const double end = in.time + in.dt;
+  Point<D> gravity = world.gravity;
+  for (double& g : gravity) g *= in.gravity;
+
+  if (skeleton.sort()) water.pressure.carry();
+  w.time = end, w.cells_found = false;
+  if (step % kLimitInterval == 0) water.explicit_limit.dt = 0;  // found anew when asked for
+  skeleton.scatter(end);
+  {
+    Stopwatch watch(water.wall_seconds);
+    push_by_points(world);
+  }
+  skeleton.predict(in.dt, gravity, in.damping, &water.acceleration);
+  if (w.relative_inertia) {
+    Stopwatch watch(water.wall_seconds);
+    predict_water<D>(world, in, gravity);
+    exchange_drag(world, end, in.dt,
+                  !in.water_flows                                             ? Exchange::locked
+                  : world.scene.numerics.drag == DragStep::by_last_velocities ? Exchange::by_old_velocities
+                                                                              : Exchange::implicit_);
+    w.walls.apply(end, in.dt, w.sums, w.velocity, false, false);
+  }
+  skeleton.constrain(end, in.dt);
+  water.correction.clear();
+  const Reals& grains = skeleton.strain_velocity(end, in.dt);
+  {
+    Stopwatch watch(water.wall_seconds);
+    if (w.relative_inertia)
+      flow_of_velocities(world, grains, water_strain_velocity(world, in));
+    else if (in.water_flows)
+      flow_by_darcy<D>(world, in, gravity);
+    if (in.water_flows) {
+      close_sides(world);
+      begin_rates(world, in.dt, grains);
+    }
+  }
+  const mpm::MoveResult moved = skeleton.gather(in.time, in.dt);
+  Stopwatch watch(water.wall_seconds);
+  if (in.water_flows) update_point_pressure<D>(world, in.dt, gravity);
+  return moved;
+}
+
+#define POLDER_INSTANTIATE(D)                         \
+  template void add_point_water<D>(World<D>&);        \
+  template void push_by_points<D>(World<D>&);         \
+  template void hold_point_water<D>(World<D>&, bool); \
+  template mpm::MoveResult step_point_water<D>(World<D>&, const StepInput&, long);
+POLDER_INSTANTIATE(2)
+POLDER_INSTANTIATE(3)
+
+}  // namespace polder::coupling
