@@ -37,18 +37,20 @@ void check_water_of_points(Reader& reader) {
       reader.error(key, "not with " + with_formulation(scene), "formulation = \"one-layer\"");
 }
 
-// On a wall with friction the weak form of the pressure presses the grains as if water were one of them.
+// Inside the grid the weak form of the pressure presses the grains on a wall as if water were one of them.
 void check_boundaries_of_points(Reader& reader) {
   const Scene& scene = reader.scene;
   using Kind = coupling::Boundary::Kind;
   for (std::size_t i = 0; i < scene.boundaries.size(); ++i) {
+    const coupling::Boundary& b = scene.boundaries[i];
     const std::string key = "boundary." + std::to_string(i + 1) + ".kind";
-    const Kind kind = scene.boundaries[i].kind;
-    if ((kind == Kind::tied || kind == Kind::friction) && !reader.failed(key))
-      reader.error(key,
-                   "\"" + std::string(kind == Kind::tied ? "tied" : "friction") +
-                       "\" is not in this version for " + with_formulation(scene),
-                   "\"roller\", \"fixed\", \"free\", \"velocity\"");
+    if (reader.failed(key)) continue;
+    if (b.kind == Kind::tied)
+      reader.error(key, "\"tied\" is not in this version for " + with_formulation(scene),
+                   "\"roller\", \"fixed\", \"friction\", \"free\", \"velocity\"");
+    else if (b.kind == Kind::friction && !b.side)
+      reader.error(key, "friction inside the grid is not in this version for " + with_formulation(scene),
+                   "a side of the grid; or \"roller\", \"fixed\"");
   }
 }
 

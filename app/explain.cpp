@@ -189,7 +189,8 @@ void explain_cost(const Scene& scene, double limit, double longest, std::ostream
   for (const StageTime& t : estimate_run_time(projected, steps_of_motion(Simulation(projected))))
     if (!std::isnan(t.seconds())) seconds += t.seconds();
   out << "one-layer     about " << duration_text(seconds)
-      << ": the same equations with a projected pressure\n";
+      << (scene.on_points() ? ": the same case with a projected pressure in cells\n"
+                            : ": the same equations with a projected pressure\n");
 }
 
 }  // namespace

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "core/error.hpp"
 #include "core/threads.hpp"
 #include "coupling/point_pressure.hpp"
 #include "coupling/point_quadrature.hpp"
+#include "coupling/points.hpp"
 #include "coupling/stopwatch.hpp"
 #include "coupling/two_layer.hpp"
 
@@ -43,6 +46,56 @@ double porosity_of(const NodeSums<D>& s, double density) {
   return s.soil[kVolume<D>] > 0 ? std::min(1.0, s.water[0] / (density * s.soil[kVolume<D>])) : 0.0;
 }
 
+// Nodes of a side of the grid between two corners (none: all of it), for f(slot).
+template <int D, class F>
+void each_node_of_side(const Grid<D>& grid, int side, const std::optional<std::array<Point<D>, 2>>& part,
+                       const F& f) {
+  const int axis = side / 2;
+  const double slack = 1e-6 * grid.spacing();
+  for (int i = 0; i < grid.slots(); ++i) {
+    const Index<D> index = grid.index(i);
+    if (index[axis] != (side % 2 ? grid.cells()[axis] : 0)) continue;
+    const Point<D> x = grid.position(index);
+    bool inside = true;
+    for (int d = 0; d < D && part; ++d)
+      inside &= d == axis || (x[d] >= std::min((*part)[0][d], (*part)[1][d]) - slack &&
+                              x[d] <= std::max((*part)[0][d], (*part)[1][d]) + slack);
+    if (inside) f(i);
+  }
+}
+
+template <int D>
+void find_sides(World<D>& world) {
+  PointWater<D>& w = *world.pore_water->points;
+  const Grid<D>& grid = world.skeleton.grid();
+  const auto at = [](int i, int axis) {
+    return [i, axis](const SideNode& n) { return n.slot == i && n.axis == axis; };
+  };
+  const auto node = [&](int i, int side, int boundary) {
+    return SideNode{i, side / 2, side % 2 ? 1 : -1, boundary, grid.position(grid.index(i))[D - 1]};
+  };
+  w.sides.clear(), w.frictional.clear();
+  for (std::size_t b = 0; b < world.scene.water_boundaries.size(); ++b) {
+    const WaterBoundary& boundary = world.scene.water_boundaries[b];
+    if (boundary.side < 0) continue;
+    std::optional<std::array<Point<D>, 2>> part;
+    if (boundary.from && boundary.to) part = {point<D>(*boundary.from), point<D>(*boundary.to)};
+    each_node_of_side<D>(grid, boundary.side, part, [&](int i) {
+      std::erase_if(w.sides, at(i, boundary.side / 2));
+      w.sides.push_back(node(i, boundary.side, static_cast<int>(b)));
+    });
+  }
+  for (const mpm::BoundarySpec<D>& spec : world.skeleton.boundaries().specs()) {
+    if (spec.kind != mpm::BoundaryKind::friction || spec.side < 0) continue;
+    std::optional<std::array<Point<D>, 2>> part;
+    if (spec.has_segment) part = {spec.from, spec.to};
+    each_node_of_side<D>(grid, spec.side, part, [&](int i) {
+      if (std::none_of(w.sides.begin(), w.sides.end(), at(i, spec.side / 2)))
+        w.frictional.push_back(node(i, spec.side, -1));
+    });
+  }
+}
+
 template <int D>
 void follow_grid(World<D>& world) {
   PointWater<D>& w = *world.pore_water->points;
@@ -53,27 +106,7 @@ void follow_grid(World<D>& world) {
   for (Reals* r : {&w.velocity_old, &w.velocity, &w.mapped, &w.flow})
     r->assign(static_cast<std::size_t>(grid.slots()) * kStride, 0.0);
   w.walls.update(grid);
-  w.sides.clear();
-  const double slack = 1e-6 * grid.spacing();
-  for (std::size_t b = 0; b < world.scene.water_boundaries.size(); ++b) {
-    const WaterBoundary& boundary = world.scene.water_boundaries[b];
-    if (boundary.side < 0) continue;
-    const int axis = boundary.side / 2, upper = boundary.side % 2;
-    for (int i = 0; i < grid.slots(); ++i) {
-      const Index<D> index = grid.index(i);
-      if (index[axis] != (upper ? grid.cells()[axis] : 0)) continue;
-      const Point<D> x = grid.position(index);
-      bool inside = true;
-      for (int d = 0; d < D && inside; ++d) {
-        if (d == axis || !boundary.from || !boundary.to) continue;
-        inside = x[d] >= std::min((*boundary.from)[d], (*boundary.to)[d]) - slack &&
-                 x[d] <= std::max((*boundary.from)[d], (*boundary.to)[d]) + slack;
-      }
-      if (!inside) continue;
-      std::erase_if(w.sides, [&](const SideNode& n) { return n.slot == i && n.axis == axis; });
-      w.sides.push_back({i, axis, upper ? 1 : -1, static_cast<int>(b), x[D - 1]});
-    }
-  }
+  find_sides(world);
 }
 
 // Pressure that a boundary prescribes at a height [Pa]; NaN where it is closed.
@@ -93,6 +126,24 @@ double pressure_at(const WaterBoundary& b, double height, double time, double un
   }
 }
 
+// A wall bears the water that lies on it, F_p . n = - rho_w V g . n of water at rest before it, and so the
+// grains press it with their effective stress, which friction follows. Soil full of water cannot leave it.
+template <int D>
+void lean_on_walls(World<D>& world) {
+  PointWater<D>& w = *world.pore_water->points;
+  if (w.frictional.empty()) return;
+  const double density = world.scene.water.density;
+  const double full = 0.5 * std::pow(world.skeleton.grid().spacing(), D);  // support of a node on a side
+  std::vector<std::uint8_t> sealed(world.skeleton.grid().slots(), 0);
+  for (const SideNode& n : w.frictional) {
+    const double volume = world.skeleton.sums()[static_cast<std::size_t>(n.slot) * 8 + kVolume<D>];
+    w.sums[static_cast<std::size_t>(n.slot) * 8 + kForce<D> + n.axis] =
+        -density * volume * w.gravity * world.gravity[n.axis];
+    if (volume > 0.5 * full) sealed[n.slot] = 1;
+  }
+  world.skeleton.boundaries().set_sealed(std::move(sealed));
+}
+
 // Water at the nodes: mass, momentum and force, with that of the pressures prescribed at the sides.
 template <int D>
 void scatter_water(World<D>& world) {
@@ -110,6 +161,7 @@ void scatter_water(World<D>& world) {
       w.sums[static_cast<std::size_t>(n.slot) * 8 + kForce<D> + n.axis] -=
           n.outward * p * area_of_side(world, n.slot);
   }
+  lean_on_walls(world);
 }
 
 double damped(double a, double v, double damping) {
@@ -230,6 +282,18 @@ void flow_of_velocities(World<D>& world, const Reals& grains, const Reals& water
   });
 }
 
+// Volume that the force at a node is shared out to at least: that of a corner of soil. Where soil only begins
+// to reach a node its volume vanishes as the square of the force, F_p / V grows without bounds and, however
+// little soil it is, would drain the cell once more through its surface.
+template <int D>
+double least_volume(const World<D>& world, int slot) {
+  const Grid<D>& grid = world.skeleton.grid();
+  double volume = std::pow(0.5 * grid.spacing(), D);
+  if (world.scene.grid.space == Space::axisymmetric)
+    volume *= std::max(grid.position(grid.index(slot))[0], 0.25 * grid.spacing());
+  return volume;
+}
+
 // q = k / gamma_w (F_p / V + rho_w (g - a)), a the acceleration of the grains. The walls take what would
 // cross them: q + v obeys them as the velocity of water does.
 template <int D>
@@ -240,7 +304,11 @@ void flow_by_darcy(World<D>& world, const StepInput& in, const Point<D>& gravity
   parallel_for(skeleton.grid().slots(), [&](int i) {
     const NodeSums<D> s(world, i);
     const bool some = s.water[0] > floor && s.soil[0] > skeleton.mass_floor();
-    const double conducted = some ? 1 / (weight * s.water[kVolume<D>]) : 0.0;  // k / (gamma_w V)
+    double conducted = 0;  // k / (gamma_w V)
+    if (some) {
+      const double volume = s.soil[kVolume<D>];
+      conducted = volume / (weight * s.water[kVolume<D>] * std::max(volume, least_volume(world, i)));
+    }
     for (int d = 0; d < D; ++d) {
       const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
       const double a = (skeleton.v_new()[j] - skeleton.v_old()[j]) / in.dt;
@@ -264,6 +332,9 @@ void add_point_water(World<D>& world) {
   PoreWater<D>& water = *world.pore_water;
   const Scene& scene = world.scene;
   const bool kept = find_formulation(scene.formulation)->inertia == RelativeInertia::kept;
+  if (!std::isfinite(scene.water.bulk_modulus))
+    throw InputError("formulation '" + scene.formulation +
+                     "' needs water that can be compressed: its pressure follows from its bulk modulus");
   water.points = std::make_unique<PointWater<D>>(kept, water_walls<D>(scene, world.skeleton.boundaries()));
   PointWater<D>& w = *water.points;
   w.transfer.grid = &world.skeleton.grid();
@@ -330,7 +401,7 @@ mpm::MoveResult step_point_water(World<D>& world, const StepInput& in, long step
   for (double& g : gravity) g *= in.gravity;
 
   if (skeleton.sort()) water.pressure.carry();
-  w.time = end, w.cells_found = false;
+  w.time = end, w.gravity = in.gravity, w.cells_found = false;
   if (step % kLimitInterval == 0) water.explicit_limit.dt = 0;  // found anew when asked for
   skeleton.scatter(end);
   {

@@ -93,9 +93,10 @@ struct PointWater {
 
   bool relative_inertia;  // points carry a velocity of the water
   mpm::Transfer<D> transfer;
-  mpm::BoundarySet<D> walls;  // of the water
-  std::vector<SideNode> sides;
-  std::uint64_t revision = 0;  // of the grid that the nodal fields belong to
+  mpm::BoundarySet<D> walls;         // of the water
+  std::vector<SideNode> sides;       // where water may pass
+  std::vector<SideNode> frictional;  // on walls with friction that hold the water
+  std::uint64_t revision = 0;        // of the grid that the nodal fields belong to
   // Nodes: sums of mpm::scatter_pore_water [slots * 8]; velocities of the water before and after the step,
   // and as its points' momenta give them; flow relative to the grains; trial velocity of the grains under
   // their boundaries [slots * 4].
@@ -109,6 +110,7 @@ struct PointWater {
   Reals cell_pressure, cell_rate;
   std::vector<Reals> pushing;
   double time = 0;                // that the pressures at the sides belong to [s]
+  double gravity = 1;             // share of the scene's gravity
   bool held = false;              // by the soil, while it relaxes
   bool cells_found = false;       // cells are those of the points as they are
   const char* limit_reason = "";  // of PoreWater::explicit_limit, which is that of the whole step here

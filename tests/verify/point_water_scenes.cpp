@@ -57,7 +57,7 @@ double analysed_point_limit(const Choice& c, double n, double density) {
 
 Flow upward_flow(const Choice& c, double head) {
   const double h = c.cell, width = 2 * h;
-  Scene s = wet_scene(c, width, 1 + 2 * h, 1);
+  Scene s = wet_scene(c, width, 1 + 2 * h, 3);
   s.gravity = {};
   s.materials = {elastic_soil(1e7, 0.2, 0.4, c.conductivity)};
   s.bodies = {box(0, 0, width, 1, c)};

@@ -61,11 +61,12 @@ TEST_CASE("harmonic column: v-w follows the equations with all inertia, u-p its 
   CHECK(all.change < 1e-3);
   CHECK(all.error(uw, g) < 0.03);
   CHECK(all.error(up, g) > 0.3);
-  g.pi1 = 0.3, g.pi2 = 0.3;
-  const Harmonic some = harmonic_column({.formulation = "u-p", .cell = 0.1}, g, 600, 8);
+  // Darcy flow at the old pressure wants 2500 steps of a period here.
+  const Harmonic some = harmonic_column({.formulation = "u-p", .cell = 0.1}, g, 3000, 8);
   CHECK(some.change < 1e-3);
-  CHECK(some.error(up, g) < 0.04);
-  CHECK(some.error(up, g) < 0.5 * some.error(darcy, g));
+  CHECK(some.error(up, g) < 0.06);
+  CHECK(some.error(uw, g) > 0.3);
+  CHECK(some.error(darcy, g) > 0.3);
 }
 
 TEST_CASE("hydrostatic columns rest, with surfaces anywhere in a cell") {
@@ -75,7 +76,7 @@ TEST_CASE("hydrostatic columns rest, with surfaces anywhere in a cell") {
       CAPTURE(f);
       CAPTURE(offset);
       const Rest r =
-          hydrostatic({.formulation = f, .conductivity = 1e-3, .bulk_modulus = 2.2e7, .offset = offset}, 1);
+          hydrostatic({.formulation = f, .conductivity = 1e-3, .bulk_modulus = 2.2e7, .offset = offset}, 2);
       CHECK(r.pressure_error < 0.002);
       CHECK(r.speed < 1e-5);
       CHECK(r.point_stress_error < 0.01);
@@ -104,11 +105,9 @@ TEST_CASE("a slump is that of a projected pressure; without cell means the point
     const Slump a = slump(c, 0.5);
     CHECK(a.height == doctest::Approx(b.height).epsilon(0.02));
     CHECK(a.runout == doctest::Approx(b.runout).epsilon(0.02));
-    Scene s = slump_scene(c, 0.5);
-    CHECK(3 * pressure_range(s) < [&] {
-      s.numerics.point_pressure = coupling::PointPressure::points;
-      return pressure_range(s);
-    }());
+    const double shared = pressure_range(slump_scene(c, 0.5));
+    c.point_pressure = coupling::PointPressure::points;
+    CHECK(pressure_range(slump_scene(c, 0.5)) > 3 * shared);
   }
 }
 
