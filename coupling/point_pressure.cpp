@@ -6,6 +6,7 @@
 #include "coupling/between_centres.hpp"
 #include "coupling/initial_state.hpp"
 #include "coupling/point_quadrature.hpp"
+#include "coupling/point_sides.hpp"
 #include "coupling/point_water.hpp"
 
 namespace polder::coupling {

@@ -6,13 +6,6 @@
 
 namespace polder::coupling {
 
-// Area of the soil at a node of a side [m2]: the support of such a node is half a cell deep.
-template <int D>
-double area_of_side(const World<D>& world, int slot) {
-  const double volume = world.skeleton.sums()[static_cast<std::size_t>(slot) * 8 + mpm::Transfer<D>::kVolume];
-  return 2 * volume / world.skeleton.grid().spacing();
-}
-
 // Before the points move: their volumes, and what PointWater::flow takes of their water. grains: the nodal
 // velocity that strains the soil [slots * 4].
 template <int D>

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
 
 #include "core/error.hpp"
 #include "core/threads.hpp"
 #include "coupling/point_pressure.hpp"
 #include "coupling/point_quadrature.hpp"
-#include "coupling/points.hpp"
+#include "coupling/point_sides.hpp"
 #include "coupling/stopwatch.hpp"
 #include "coupling/two_layer.hpp"
 
@@ -46,56 +44,6 @@ double porosity_of(const NodeSums<D>& s, double density) {
   return s.soil[kVolume<D>] > 0 ? std::min(1.0, s.water[0] / (density * s.soil[kVolume<D>])) : 0.0;
 }
 
-// Nodes of a side of the grid between two corners (none: all of it), for f(slot).
-template <int D, class F>
-void each_node_of_side(const Grid<D>& grid, int side, const std::optional<std::array<Point<D>, 2>>& part,
-                       const F& f) {
-  const int axis = side / 2;
-  const double slack = 1e-6 * grid.spacing();
-  for (int i = 0; i < grid.slots(); ++i) {
-    const Index<D> index = grid.index(i);
-    if (index[axis] != (side % 2 ? grid.cells()[axis] : 0)) continue;
-    const Point<D> x = grid.position(index);
-    bool inside = true;
-    for (int d = 0; d < D && part; ++d)
-      inside &= d == axis || (x[d] >= std::min((*part)[0][d], (*part)[1][d]) - slack &&
-                              x[d] <= std::max((*part)[0][d], (*part)[1][d]) + slack);
-    if (inside) f(i);
-  }
-}
-
-template <int D>
-void find_sides(World<D>& world) {
-  PointWater<D>& w = *world.pore_water->points;
-  const Grid<D>& grid = world.skeleton.grid();
-  const auto at = [](int i, int axis) {
-    return [i, axis](const SideNode& n) { return n.slot == i && n.axis == axis; };
-  };
-  const auto node = [&](int i, int side, int boundary) {
-    return SideNode{i, side / 2, side % 2 ? 1 : -1, boundary, grid.position(grid.index(i))[D - 1]};
-  };
-  w.sides.clear(), w.frictional.clear();
-  for (std::size_t b = 0; b < world.scene.water_boundaries.size(); ++b) {
-    const WaterBoundary& boundary = world.scene.water_boundaries[b];
-    if (boundary.side < 0) continue;
-    std::optional<std::array<Point<D>, 2>> part;
-    if (boundary.from && boundary.to) part = {point<D>(*boundary.from), point<D>(*boundary.to)};
-    each_node_of_side<D>(grid, boundary.side, part, [&](int i) {
-      std::erase_if(w.sides, at(i, boundary.side / 2));
-      w.sides.push_back(node(i, boundary.side, static_cast<int>(b)));
-    });
-  }
-  for (const mpm::BoundarySpec<D>& spec : world.skeleton.boundaries().specs()) {
-    if (spec.kind != mpm::BoundaryKind::friction || spec.side < 0) continue;
-    std::optional<std::array<Point<D>, 2>> part;
-    if (spec.has_segment) part = {spec.from, spec.to};
-    each_node_of_side<D>(grid, spec.side, part, [&](int i) {
-      if (std::none_of(w.sides.begin(), w.sides.end(), at(i, spec.side / 2)))
-        w.frictional.push_back(node(i, spec.side, -1));
-    });
-  }
-}
-
 template <int D>
 void follow_grid(World<D>& world) {
   PointWater<D>& w = *world.pore_water->points;
@@ -109,41 +57,6 @@ void follow_grid(World<D>& world) {
   find_sides(world);
 }
 
-// Pressure that a boundary prescribes at a height [Pa]; NaN where it is closed.
-double pressure_at(const WaterBoundary& b, double height, double time, double unit_weight) {
-  constexpr double kClosed = std::numeric_limits<double>::quiet_NaN();
-  switch (b.kind) {
-    case WaterBoundary::Kind::head: {
-      const double depth = b.value.at(time) - height;
-      return depth > 0 ? unit_weight * depth : kClosed;
-    }
-    case WaterBoundary::Kind::pressure:
-      return b.value.at(time);
-    case WaterBoundary::Kind::surface:
-      return 0;
-    default:
-      return kClosed;
-  }
-}
-
-// A wall bears the water that lies on it, F_p . n = - rho_w V g . n of water at rest before it, and so the
-// grains press it with their effective stress, which friction follows. Soil full of water cannot leave it.
-template <int D>
-void lean_on_walls(World<D>& world) {
-  PointWater<D>& w = *world.pore_water->points;
-  if (w.frictional.empty()) return;
-  const double density = world.scene.water.density;
-  const double full = 0.5 * std::pow(world.skeleton.grid().spacing(), D);  // support of a node on a side
-  std::vector<std::uint8_t> sealed(world.skeleton.grid().slots(), 0);
-  for (const SideNode& n : w.frictional) {
-    const double volume = world.skeleton.sums()[static_cast<std::size_t>(n.slot) * 8 + kVolume<D>];
-    w.sums[static_cast<std::size_t>(n.slot) * 8 + kForce<D> + n.axis] =
-        -density * volume * w.gravity * world.gravity[n.axis];
-    if (volume > 0.5 * full) sealed[n.slot] = 1;
-  }
-  world.skeleton.boundaries().set_sealed(std::move(sealed));
-}
-
 // Water at the nodes: mass, momentum and force, with that of the pressures prescribed at the sides.
 template <int D>
 void scatter_water(World<D>& world) {
@@ -154,14 +67,7 @@ void scatter_water(World<D>& world) {
   mpm::scatter_pore_water(w.transfer, world.scene.water.density, world.scene.kozeny_carman(), w.sums);
   if (mixed) add_force_of_full_cells(world);
   mpm::velocities_of(w.transfer, w.sums, w.velocity_old);
-  for (const SideNode& n : w.sides) {
-    const double p =
-        pressure_at(world.scene.water_boundaries[n.boundary], n.height, w.time, world.unit_weight());
-    if (!std::isnan(p))
-      w.sums[static_cast<std::size_t>(n.slot) * 8 + kForce<D> + n.axis] -=
-          n.outward * p * area_of_side(world, n.slot);
-  }
-  lean_on_walls(world);
+  push_at_sides(world);
 }
 
 double damped(double a, double v, double damping) {
@@ -254,16 +160,6 @@ const Reals& water_strain_velocity(World<D>& world, const StepInput& in) {
   });
   w.walls.apply(in.time + in.dt, in.dt, w.sums, w.mapped, false, false);
   return w.mapped;
-}
-
-// Nothing passes a side that is closed at present, as above the level of a head.
-template <int D>
-void close_sides(World<D>& world) {
-  PointWater<D>& w = *world.pore_water->points;
-  for (const SideNode& n : w.sides)
-    if (std::isnan(
-            pressure_at(world.scene.water_boundaries[n.boundary], n.height, w.time, world.unit_weight())))
-      w.flow[static_cast<std::size_t>(n.slot) * kStride + n.axis] = 0;
 }
 
 // q = n (w - v).
