@@ -58,6 +58,7 @@ void waves_table() {
 
 void harmonic_table() {
   using enum ColumnEquations;
+  constexpr int kMostSteps = 250000;  // of u-p, which Darcy flow slows down
   std::printf(
       "| Pi1 | Pi2 | h | v-w: u-w | u-p | u-p: u-w | its own | exact: u-p against u-w | change "
       "|\n|---|---|---|---|---|---|---|---|---|\n");
@@ -65,8 +66,9 @@ void harmonic_table() {
     double pi1, pi2;
     int cells, periods;
   };
-  for (const Run& run : {Run{0.1, 0.1, 40, 6}, Run{0.1, 1, 40, 24}, Run{1, 0.001, 20, 6}, Run{1, 0.1, 20, 6},
-                         Run{1, 1, 20, 8}, Run{1, 1, 40, 8}, Run{10, 0.1, 20, 8}, Run{10, 1, 20, 24}}) {
+  for (const Run& run :
+       {Run{0.1, 0.1, 40, 6}, Run{0.1, 1, 40, 24}, Run{1, 0.001, 20, 6}, Run{1, 0.1, 20, 6}, Run{1, 1, 20, 8},
+        Run{1, 1, 40, 8}, Run{10, 0.1, 20, 8}, Run{10, 1, 20, 24}, Run{10, 1, 40, 24}}) {
     HarmonicGroups g;
     g.pi1 = run.pi1, g.pi2 = run.pi2;
     // Steps of a period at half the limits of the wave and of Darcy flow.
@@ -75,11 +77,16 @@ void harmonic_table() {
     const auto steps = [](double least) { return static_cast<int>(std::ceil(std::max(400.0, 2 * least))); };
     Choice c{.formulation = "v-w", .cell = h};
     const Harmonic all = harmonic_column(c, g, steps(wave), run.periods);
-    c.formulation = "u-p";
-    const Harmonic some = harmonic_column(c, g, steps(wave + darcy), run.periods);
-    std::printf("| %g | %g | 1/%d | %.3f | %.3f | %.3f | %.3f | %.3f | %.0e |\n", g.pi1, g.pi2, run.cells,
-                all.error(uw, g), all.error(up, g), some.error(uw, g), some.error(up, g),
-                harmonic_difference(up, uw, g), std::max(all.change, some.change));
+    std::printf("| %g | %g | 1/%d | %.3f | %.3f |", g.pi1, g.pi2, run.cells, all.error(uw, g),
+                all.error(up, g));
+    if (steps(wave + darcy) * run.periods < kMostSteps) {
+      c.formulation = "u-p";
+      const Harmonic some = harmonic_column(c, g, steps(wave + darcy), run.periods);
+      std::printf(" %.3f | %.3f | %.3f | %.0e |\n", some.error(uw, g), some.error(up, g),
+                  harmonic_difference(up, uw, g), std::max(all.change, some.change));
+    } else {
+      std::printf(" – | – | %.3f | %.0e |\n", harmonic_difference(up, uw, g), all.change);
+    }
     std::fflush(stdout);
   }
 }
