@@ -11,51 +11,94 @@ namespace {
 constexpr int kStride = 4;
 constexpr double kLeastPorosity = 0.05;
 
+// Drag at a node over the step, b = dt B / M_w with B the drag of the node's water; 0 where a layer is
+// missing.
+template <int D>
+struct NodeDrag {
+  NodeDrag(const World<D>& world, int i, double dt, double floor)
+      : soil(world.skeleton.sums()[static_cast<std::size_t>(i) * 8]),
+        water(world.pore_water->layer->fluid.sums()[static_cast<std::size_t>(i) * 8]),
+        has_soil(soil > world.skeleton.mass_floor()),
+        has_water(water > floor) {
+    if (has_soil && has_water)
+      b = dt *
+          world.pore_water->layer->fluid.sums()[static_cast<std::size_t>(i) * 8 + mpm::FluidLayer<D>::kDrag] /
+          water;
+  }
+  double soil, water;  // masses [kg]
+  bool has_soil, has_water;
+  double b = 0;
+};
+
 }  // namespace
 
 template <int D>
-void exchange_drag(World<D>& world, double end, double dt) {
+void push_by_drag(World<D>& world, double end, double dt) {
+  WaterLayer<D>& layer = *world.pore_water->layer;
+  mpm::Skeleton<D>& skeleton = world.skeleton;
+  const std::vector<std::uint8_t>& held = skeleton.boundaries().held_components();
+  const std::vector<std::uint8_t>& walled = layer.fluid.held_components();
+  const double floor = water_floor(world);
+  Reals& trial = skeleton.v_trial();
+  layer.grains = trial;
+  skeleton.boundaries().apply(end, dt, skeleton.sums(), layer.grains, false, false);
+  parallel_for(skeleton.grid().slots(), [&](int i) {
+    const NodeDrag<D> node(world, i, dt, floor);
+    for (int d = 0; d < D; ++d) {
+      const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
+      const bool fixed = held[i] >> d & 1, wall = walled[i] >> d & 1;
+      const double w = layer.fluid.velocity()[j];
+      // A wall that holds the water takes its momentum, so grains there drag on something immovable.
+      if (node.b > 0 && wall) {
+        if (!fixed) trial[j] += node.b * node.water / node.soil * w;
+      } else if (node.b > 0) {
+        // Held grains have their velocity already, and that drags on the water.
+        const double own = fixed ? layer.grains[j] : 0.0;
+        trial[j] += node.b / (1 + node.b) * node.water / node.soil * (w - own);
+      }
+      layer.grains[j] = trial[j];
+    }
+  });
+}
+
+template <int D>
+void share_drag(World<D>& world, double dt) {
   WaterLayer<D>& layer = *world.pore_water->layer;
   mpm::Skeleton<D>& skeleton = world.skeleton;
   const std::vector<std::uint8_t>& held = skeleton.boundaries().held_components();
   const std::vector<std::uint8_t>& walled = layer.fluid.held_components();
   const double per_density = 1 / world.scene.water.density, floor = water_floor(world);
-  Reals& trial = skeleton.v_trial();
-  Reals& held_velocity = layer.grains;
-  held_velocity = trial;
-  skeleton.boundaries().apply(end, dt, skeleton.sums(), held_velocity, false, false);
-  for (Reals* r : {&layer.water, &layer.grains_response, &layer.water_response}) r->resize(trial.size());
+  Reals& velocity = skeleton.v_new();
+  for (Reals* r : {&layer.water, &layer.grains_response, &layer.water_response}) r->resize(velocity.size());
   parallel_for(skeleton.grid().slots(), [&](int i) {
+    const NodeDrag<D> node(world, i, dt, floor);
+    const double b = node.b, a = b / (1 + b);
     const double* s = &skeleton.sums()[static_cast<std::size_t>(i) * 8];
-    const double* f = &layer.fluid.sums()[static_cast<std::size_t>(i) * 8];
-    const double soil = s[0], water = f[0];
-    const bool has_soil = soil > skeleton.mass_floor(), has_water = water > floor;
-    const double push_soil = has_soil ? dt * s[mpm::Transfer<D>::kVolume] / soil : 0.0;
-    const double push_water = has_water ? dt * per_density : 0.0;
-    const double b = has_soil && has_water ? dt * f[mpm::FluidLayer<D>::kDrag] / water : 0.0;
-    const double whole = soil + b * (soil + water);
+    const double push_soil = node.has_soil ? dt * s[mpm::Transfer<D>::kVolume] / node.soil : 0.0;
+    const double push_water = node.has_water ? dt * per_density : 0.0;
     for (int d = 0; d < D; ++d) {
       const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
-      const bool fixed = held[i] >> d & 1, wall = walled[i] >> d & 1;
-      const double v = trial[j], w = layer.fluid.velocity()[j];
+      const bool stopped = (held[i] >> d & 1) || (velocity[j] == 0 && layer.grains[j] != 0);
+      const bool wall = walled[i] >> d & 1;
+      const double w = layer.fluid.velocity()[j];
       double &rs = layer.grains_response[j], &rw = layer.water_response[j];
       layer.water[j] = w;
-      rs = fixed ? 0.0 : push_soil;
+      rs = stopped ? 0.0 : push_soil;
       rw = wall ? 0.0 : push_water;
-      if (!has_soil || !has_water) {
-        if (!has_soil) rs = rw;
-        if (!has_water) rw = rs;
+      if (!node.has_soil || !node.has_water) {
+        if (!node.has_soil) rs = rw;
+        if (!node.has_water) rw = rs;
       } else if (wall) {
-        if (!fixed) trial[j] = (v + b * water / soil * w) / (1 + b * water / soil);
-      } else if (fixed) {
-        layer.water[j] = (w + b * held_velocity[j]) / (1 + b);
-        trial[j] += water / soil * (w - layer.water[j]);
-        rw = push_water / (1 + b);
+        const double carried = 1 + b * node.water / node.soil;
+        if (!stopped) velocity[j] /= carried, rs /= carried;
       } else {
-        trial[j] = ((1 + b) * soil * v + b * water * w) / whole;
-        layer.water[j] = ((soil + b * water) * w + b * soil * v) / whole;
-        rs = ((1 + b) * soil * push_soil + b * water * push_water) / whole;
-        rw = ((soil + b * water) * push_water + b * soil * push_soil) / whole;
+        if (!stopped) {
+          const double carried = 1 + a * node.water / node.soil;
+          velocity[j] /= carried;
+          rs = (push_soil + a * node.water / node.soil * push_water) / carried;
+        }
+        layer.water[j] = (w + b * velocity[j]) / (1 + b);
+        rw = (push_water + b * rs) / (1 + b);
       }
     }
   });
@@ -130,7 +173,9 @@ void follow_flow(World<D>& world) {
 
 template void follow_flow<2>(World<2>&);
 template void follow_flow<3>(World<3>&);
-template void exchange_drag<2>(World<2>&, double, double);
-template void exchange_drag<3>(World<3>&, double, double);
+template void push_by_drag<2>(World<2>&, double, double);
+template void push_by_drag<3>(World<3>&, double, double);
+template void share_drag<2>(World<2>&, double);
+template void share_drag<3>(World<3>&, double);
 
 }  // namespace polder::coupling

@@ -1,10 +1,14 @@
 // Drag between the two layers of points: what each node of the grid passes from water to grains in a step.
 //
-// With b = dt B / M_w, B the drag of the node's water [N s/m], M_s and M_w its masses of grains and water,
-//   M_s (v - v~) = - M_w (w - w~) = dt B (w - v)
-// in the velocities at the end of the step, solved in closed form: no limit of the step, and what one layer
-// gains the other loses to rounding (Bandara & Soga 2015 exchange the same force explicitly). B comes from
-// the drag of the cells at the water's points, WaterLayer::drag [Pa s/m2 per volume of water].
+// With B the drag of the node's water [N s/m], M_s and M_w its masses of grains and water, J the impulse of
+// the boundaries on the grains,
+//   M_s (v - v~) = J - M_w (w - w~) = J + dt B (w - v)
+// in the velocities at the end of the step: no limit of the step, and what one layer gains the other loses to
+// rounding (Bandara & Soga 2015 exchange the same force explicitly). B comes from the drag of the cells at
+// the water's points, WaterLayer::drag [Pa s/m2 per volume of water]. Eliminating w,
+//   (M_s + a M_w) v = M_s P + J,   P = v~ + a (M_w / M_s) w~,   a = b / (1 + b),   b = dt B / M_w:
+// the grains move as if they carried the share a of the water with them. The boundaries act on P, and take
+// from it the impulse that they really feel, friction included.
 #pragma once
 
 #include <cmath>
@@ -21,12 +25,16 @@ double water_floor(const World<D>& world) {
   return kNoWater * world.scene.water.density * std::pow(world.scene.grid.cell, D);
 }
 
-// Exchanges drag between the trial velocities of grains and water, and finds what a unit pressure gradient
-// over the step does to both (WaterLayer: water, grains_response, water_response). Where a boundary holds the
-// grains they do not give way to the water; the reaction goes into their trial velocity all the same, from
-// where the boundary takes it, and friction feels it. end: time at the end of the step [s].
+// First half, before the boundaries: P in place of the trial velocity of the grains. end: time at the end of
+// the step [s].
 template <int D>
-void exchange_drag(World<D>& world, double end, double dt);
+void push_by_drag(World<D>& world, double end, double dt);
+
+// Second half, after them: the velocities of both layers, and what a unit pressure gradient over the step
+// does to them (WaterLayer: water, grains_response, water_response). Grains that a boundary holds, or that
+// friction stops, do not give way to the water.
+template <int D>
+void share_drag(World<D>& world, double dt);
 
 template <int D>
 DragFluid drag_fluid(const World<D>& world) {

@@ -249,8 +249,9 @@ mpm::MoveResult step_two_layer(World<D>& world, const StepInput& in, long step) 
   skeleton.predict(in.dt, gravity, in.damping, &w.acceleration);
   predict_water<D>(world, end, in.dt, gravity);
   if (layer.viscosity) layer.viscosity->diffuse(layer.fluid, layer.sums, in.dt, layer.fluid.velocity());
-  exchange_drag(world, end, in.dt);
+  push_by_drag(world, end, in.dt);
   skeleton.constrain(end, in.dt);
+  share_drag(world, in.dt);
   {
     Stopwatch watch(w.wall_seconds);
     complete_velocities(world, skeleton.strain_velocity(end, in.dt));

@@ -170,20 +170,30 @@ void BoundarySet<D>::apply(double time, double dt, const Reals& sums, Reals& v, 
       }
       account(n.spec);
     }
-    if (!friction) continue;
     // Friction acts on what the other boundaries of the node leave of its velocity: beside a wall the trial
     // velocity into that wall is no slip.
     for (std::size_t i = first; i < next; ++i) {
-      const Node& n = nodes_[i];
+      Node& n = nodes_[i];
       const BoundarySpec<D>& spec = specs_[n.spec];
-      if (spec.kind != BoundaryKind::friction || !(n.pressed > 0)) continue;
+      if (spec.kind != BoundaryKind::friction) continue;
+      if (!friction) {
+        double away = 0;
+        for (int d = 0; d < D; ++d) away += u[d] * n.normal[d];
+        for (int d = 0; d < D && n.stopped; ++d)
+          if (!driven[d]) u[d] = away * n.normal[d];
+        continue;
+      }
+      n.stopped = false;
+      if (!(n.pressed > 0)) continue;
       double slip = 0;
       for (int d = 0; d < D; ++d) slip += driven[d] ? 0 : u[d] * u[d];
       slip = std::sqrt(slip);
-      if (slip == 0) continue;
+      n.stopped = slip == 0;
+      if (n.stopped) continue;
       keep();
       const double share =
           sticking_ ? 0.0 : std::max(0.0, 1 - friction_share_ * spec.coefficient * n.pressed / slip);
+      n.stopped = share == 0;
       for (int d = 0; d < D; ++d)
         if (!driven[d]) u[d] *= share;
       account(n.spec);

@@ -62,8 +62,11 @@ class BoundarySet {
   void update(const Grid<D>& grid);
 
   // Constrain v [slots * 4] at time t. mass [sums, stride 8] turns velocity changes into reactions; with
-  // `record` the force of each boundary on the material over dt is kept. `friction` false leaves tangential
-  // velocities alone (the second mapping of MUSL, which has friction in it already).
+  // `record` the force of each boundary on the material over dt is kept. `friction` false is for velocities
+  // that have friction in them already (corrected ones, the second mapping of MUSL): nodes that it has
+  // stopped when it last acted stay so, others keep their tangential velocity. Nodes that friction holds and
+  // the mapping lets slip would be pulled back and forth by stresses that do work on that slip, and wet soil
+  // on its base started to tremble.
   void apply(double time, double dt, const Reals& sums, Reals& v, bool friction, bool record);
 
   // Nodes (slots; empty: none) at which saturated soil cannot leave a friction boundary along a side of the
@@ -81,8 +84,9 @@ class BoundarySet {
   struct Node {
     int slot;
     int spec;
-    Point<D> normal;  // into the material
-    double pressed;   // friction: velocity into the boundary that it has taken away
+    Point<D> normal;       // into the material
+    double pressed;        // friction: velocity into the boundary that it has taken away
+    bool stopped = false;  // and it has stopped the node when it last acted
   };
   void tie(const Grid<D>& grid, int side);
 

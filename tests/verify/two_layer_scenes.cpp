@@ -152,6 +152,45 @@ FallingHead falling_head(const Choice& c, double jitter, double duration) {
   return r;
 }
 
+LevelSeepage level_seepage(const Choice& c, double duration) {
+  constexpr double kLength = 1, kHeight = 0.5, kUpstream = 0.8, kDownstream = 0.6;
+  Scene s = wet_scene(c, kLength, kHeight, duration);
+  // As stiff as lets it consolidate within a second.
+  s.materials = {elastic_soil(1e4 / c.conductivity, 0.2, kPorosity, c.conductivity, kDensitySolid)};
+  s.bodies = {box(0, 0, kLength, kHeight, c)};
+  s.bodies[0].stress.kind = InitialStress::Kind::k0;
+  s.bodies[0].stress.k0 = {0.5};
+  coupling::Boundary base;
+  base.name = "base";
+  base.kind = coupling::Boundary::Kind::friction;
+  base.side = 2;
+  base.coefficient = 0.5;
+  s.boundaries = {base};
+  for (const int side : {0, 1}) {
+    WaterBoundary b;
+    b.name = side == 0 ? "upstream" : "downstream";
+    b.side = side;
+    b.value.value = {side == 0 ? kUpstream : kDownstream};
+    s.water_boundaries.push_back(b);
+  }
+  Simulation sim(s);
+  while (sim.time() < 0.5 * duration) sim.step();
+  const double gradient = (kUpstream - kDownstream) / kLength;
+  double flow = 0;
+  long steps = 0;
+  for (; !sim.finished(); ++steps) sim.step(), flow += column_of(sim, "discharge:downstream[m3/s]");
+  LevelSeepage r;
+  r.outflow_error = flow / static_cast<double>(steps) / (c.conductivity * gradient * kHeight) - 1;
+  for (double x = 0.5 * c.cell; x < kLength; x += c.cell)
+    for (double y = 0.5 * c.cell; y < kHeight; y += c.cell) {
+      const double exact = kUnitWeight * (kUpstream - gradient * x - y);
+      const double error = sim.cell_quantity({x, y, 0}, "pore_pressure") - exact;
+      r.pressure_error =
+          std::max(r.pressure_error, std::abs(error) / (kUnitWeight * (kUpstream - kDownstream)));
+    }
+  return r;
+}
+
 double drag_rate(double conductivity) {
   return kPorosity * kPorosity * kUnitWeight / conductivity *
          (1 / ((1 - kPorosity) * kDensitySolid) + 1 / (kPorosity * kDensityWater));

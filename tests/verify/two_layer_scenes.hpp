@@ -35,6 +35,13 @@ struct FallingHead {
 };
 FallingHead falling_head(const Choice& choice, double jitter, double duration);
 
+// Water driven through a confined layer that friction holds on its base: the head falls evenly along it.
+struct LevelSeepage {
+  double outflow_error = 0;   // over what Darcy's law lets through [-]
+  double pressure_error = 0;  // largest, over the head that drives it [-]
+};
+LevelSeepage level_seepage(const Choice& choice, double duration);
+
 // Block of soil and water that float without weight, the water so soft that it knows no pressure: drag alone
 // passes momentum between them.
 struct Exchange {

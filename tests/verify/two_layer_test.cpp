@@ -88,6 +88,20 @@ TEST_CASE("two layers: a pond drains through soil") {
   CHECK(fine.drift_rms < 0.02);
 }
 
+TEST_CASE("seepage along a base that holds the soil by friction") {
+  set_threads(1);
+  for (const char* formulation : {"one-layer", "two-layer"})
+    for (const double k : {1e-3, 1e-4}) {
+      Choice c = layers(k);
+      c.formulation = formulation;
+      const LevelSeepage r = level_seepage(c, 1);
+      CAPTURE(formulation);
+      CAPTURE(k);
+      CHECK(std::abs(r.outflow_error) < 0.005);
+      CHECK(r.pressure_error < 0.005);
+    }
+}
+
 TEST_CASE("two layers: upward seepage at 0.6 and 0.9 of the critical gradient") {
   set_threads(1);
   for (const double share : {0.6, 0.9}) {
@@ -129,8 +143,8 @@ TEST_CASE("two layers: drag passes momentum exactly, at any step") {
     CAPTURE(k);
     const Exchange slow = exchange_of_momentum(layers(k), 1e-6, 3);
     CHECK(slow.momentum_error < 1e-13);
-    CHECK(std::abs(slow.decay_error) < 1e-6);
-    const Exchange fast = exchange_of_momentum(layers(k), 0.5, 200);  // through cells and blocks
+    CHECK(std::abs(slow.decay_error) < 1e-11 + 2e-16 / slow.relative);  // the rounding of what is left of it
+    const Exchange fast = exchange_of_momentum(layers(k), 0.5, 200);    // through cells and blocks
     CHECK(fast.momentum_error < 1e-13);
     CHECK(std::abs(fast.relative) < 1e-3);
     if (k == 1e-6) CHECK(fast.explicit_ratio > 700);
