@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kRestInterval = 20;  // steps between two looks at the equilibrium ratios
 constexpr int kWaveInterval = 64;  // steps between two looks at the wave speed
-// In two layers longer steps stay stable, but from 0.7 on suction grows behind a slide under MUSL
+// In two layers longer steps stay stable, but slides come out shorter the longer they are
 // (docs/theory/two-layer.md).
 constexpr double kLayeredCourant = 0.5;
 constexpr double kSpeedShare = 0.2;  // of a cell that a particle may cross in one step
