@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/threads.hpp"
+#include "mpm/point_stencil.hpp"
 
 namespace polder::coupling {
 namespace {
@@ -11,24 +12,14 @@ namespace {
 constexpr int kStride = 4;
 constexpr double kLeastPorosity = 0.05;
 
-// Drag at a node over the step, b = dt B / M_w with B the drag of the node's water; 0 where a layer is
-// missing.
 template <int D>
-struct NodeDrag {
-  NodeDrag(const World<D>& world, int i, double dt, double floor)
-      : soil(world.skeleton.sums()[static_cast<std::size_t>(i) * 8]),
-        water(world.pore_water->layer->fluid.sums()[static_cast<std::size_t>(i) * 8]),
-        has_soil(soil > world.skeleton.mass_floor()),
-        has_water(water > floor) {
-    if (has_soil && has_water)
-      b = dt *
-          world.pore_water->layer->fluid.sums()[static_cast<std::size_t>(i) * 8 + mpm::FluidLayer<D>::kDrag] /
-          water;
-  }
-  double soil, water;  // masses [kg]
-  bool has_soil, has_water;
-  double b = 0;
-};
+NodeDrag node_drag(const World<D>& world, int i, double dt, double floor) {
+  const double* water = &world.pore_water->layer->fluid.sums()[static_cast<std::size_t>(i) * 8];
+  NodeDrag n{world.skeleton.sums()[static_cast<std::size_t>(i) * 8], water[0]};
+  if (n.soil > world.skeleton.mass_floor() && n.water > floor)
+    n.b = dt * water[mpm::FluidLayer<D>::kDrag] / n.water;
+  return n;
+}
 
 }  // namespace
 
@@ -43,19 +34,12 @@ void push_by_drag(World<D>& world, double end, double dt) {
   layer.grains = trial;
   skeleton.boundaries().apply(end, dt, skeleton.sums(), layer.grains, false, false);
   parallel_for(skeleton.grid().slots(), [&](int i) {
-    const NodeDrag<D> node(world, i, dt, floor);
+    const NodeDrag node = node_drag(world, i, dt, floor);
     for (int d = 0; d < D; ++d) {
       const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
-      const bool fixed = held[i] >> d & 1, wall = walled[i] >> d & 1;
-      const double w = layer.fluid.velocity()[j];
-      // A wall that holds the water takes its momentum, so grains there drag on something immovable.
-      if (node.b > 0 && wall) {
-        if (!fixed) trial[j] += node.b * node.water / node.soil * w;
-      } else if (node.b > 0) {
-        // Held grains have their velocity already, and that drags on the water.
-        const double own = fixed ? layer.grains[j] : 0.0;
-        trial[j] += node.b / (1 + node.b) * node.water / node.soil * (w - own);
-      }
+      const double own = layer.grains[j];  // where a boundary holds the grains
+      if (node.b > 0)
+        trial[j] += node.push(layer.fluid.velocity()[j], own, held[i] >> d & 1, walled[i] >> d & 1);
       layer.grains[j] = trial[j];
     }
   });
@@ -71,35 +55,33 @@ void share_drag(World<D>& world, double dt) {
   Reals& velocity = skeleton.v_new();
   for (Reals* r : {&layer.water, &layer.grains_response, &layer.water_response}) r->resize(velocity.size());
   parallel_for(skeleton.grid().slots(), [&](int i) {
-    const NodeDrag<D> node(world, i, dt, floor);
-    const double b = node.b, a = b / (1 + b);
+    const NodeDrag node = node_drag(world, i, dt, floor);
+    const bool has_soil = node.soil > skeleton.mass_floor(), has_water = node.water > floor;
     const double* s = &skeleton.sums()[static_cast<std::size_t>(i) * 8];
-    const double push_soil = node.has_soil ? dt * s[mpm::Transfer<D>::kVolume] / node.soil : 0.0;
-    const double push_water = node.has_water ? dt * per_density : 0.0;
+    const double push_soil = has_soil ? dt * s[mpm::Transfer<D>::kVolume] / node.soil : 0.0;
+    const double push_water = has_water ? dt * per_density : 0.0;
     for (int d = 0; d < D; ++d) {
       const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
       const bool stopped = (held[i] >> d & 1) || (velocity[j] == 0 && layer.grains[j] != 0);
       const bool wall = walled[i] >> d & 1;
       const double w = layer.fluid.velocity()[j];
-      double &rs = layer.grains_response[j], &rw = layer.water_response[j];
+      double &v = velocity[j], &rs = layer.grains_response[j], &rw = layer.water_response[j];
       layer.water[j] = w;
       rs = stopped ? 0.0 : push_soil;
       rw = wall ? 0.0 : push_water;
-      if (!node.has_soil || !node.has_water) {
-        if (!node.has_soil) rs = rw;
-        if (!node.has_water) rw = rs;
-      } else if (wall) {
-        const double carried = 1 + b * node.water / node.soil;
-        if (!stopped) velocity[j] /= carried, rs /= carried;
-      } else {
-        if (!stopped) {
-          const double carried = 1 + a * node.water / node.soil;
-          velocity[j] /= carried;
-          rs = (push_soil + a * node.water / node.soil * push_water) / carried;
-        }
-        layer.water[j] = (w + b * velocity[j]) / (1 + b);
-        rw = (push_water + b * rs) / (1 + b);
+      if (!has_soil || !has_water) {
+        if (!has_soil) rs = rw;
+        if (!has_water) rw = rs;
+        continue;
       }
+      if (!stopped) {
+        v /= node.carried(wall);
+        rs = (push_soil + (wall ? 0.0 : node.share() * node.water / node.soil * push_water)) /
+             node.carried(wall);
+      }
+      if (wall) continue;
+      layer.water[j] = node.water_after(w, v);
+      rw = node.water_after(push_water, rs);
     }
   });
 }
@@ -113,33 +95,18 @@ double relative_speed(const World<D>& world, const ParticleSet<D>& set, int p) {
   const mpm::FluidLayer<D>& fluid = world.pore_water->layer->fluid;
   const Reals& grains = world.skeleton.v_new();
   const double floor = water_floor(world);
-  Index<D> base;
-  double share[D];
-  for (int d = 0; d < D; ++d) {
-    const double x = (set.position[d][p] - grid.origin()[d]) / grid.spacing();
-    base[d] = std::clamp(static_cast<int>(std::floor(x)), 0, grid.cells()[d] - 1);
-    share[d] = x - base[d];
-  }
+  Point<D> x;
+  for (int d = 0; d < D; ++d) x[d] = set.position[d][p];
+  const mpm::PointStencil<D> s = mpm::point_stencil<D>(grid, mpm::ShapeKind::linear, x, Point<D>{});
   Point<D> sum{};
   double whole = 0;
-  for (int k = 0; k < ipow(2, D); ++k) {
-    Index<D> node = base;
-    double weight = 1;
-    for (int d = 0; d < D; ++d) {
-      const int one = k >> d & 1;
-      node[d] += one;
-      weight *= one ? share[d] : 1 - share[d];
-    }
-    const int slot = grid.slot(node);
-    if (slot < 0 ||
-        !(world.skeleton.sums()[static_cast<std::size_t>(slot) * 8] > world.skeleton.mass_floor()) ||
-        !(fluid.sums()[static_cast<std::size_t>(slot) * 8] > floor))
+  for (int k = 0; k < s.count; ++k) {
+    const std::size_t slot = static_cast<std::size_t>(s.slot[k]);
+    if (!(world.skeleton.sums()[slot * 8] > world.skeleton.mass_floor()) || !(fluid.sums()[slot * 8] > floor))
       continue;
-    whole += weight;
-    for (int d = 0; d < D; ++d) {
-      const std::size_t j = static_cast<std::size_t>(slot) * kStride + d;
-      sum[d] += weight * (fluid.velocity()[j] - grains[j]);
-    }
+    whole += s.weight[k];
+    for (int d = 0; d < D; ++d)
+      sum[d] += s.weight[k] * (fluid.velocity()[slot * kStride + d] - grains[slot * kStride + d]);
   }
   double square = 0;
   for (int d = 0; d < D; ++d) square += sum[d] * sum[d];

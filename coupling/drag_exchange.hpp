@@ -1,14 +1,15 @@
-// Drag between the two layers of points: what each node of the grid passes from water to grains in a step.
+// Drag between water and grains: what each node of the grid passes from one to the other in a step, where
+// both have velocities.
 //
 // With B the drag of the node's water [N s/m], M_s and M_w its masses of grains and water, J the impulse of
 // the boundaries on the grains,
 //   M_s (v - v~) = J - M_w (w - w~) = J + dt B (w - v)
 // in the velocities at the end of the step: no limit of the step, and what one layer gains the other loses to
-// rounding (Bandara & Soga 2015 exchange the same force explicitly). B comes from the drag of the cells at
-// the water's points, WaterLayer::drag [Pa s/m2 per volume of water]. Eliminating w,
+// rounding (Bandara & Soga 2015 exchange the same force explicitly). Eliminating w,
 //   (M_s + a M_w) v = M_s P + J,   P = v~ + a (M_w / M_s) w~,   a = b / (1 + b),   b = dt B / M_w:
 // the grains move as if they carried the share a of the water with them. The boundaries act on P, and take
-// from it the impulse that they really feel, friction included.
+// from it the impulse that they really feel, friction included. In two layers B comes from the drag of the
+// cells at the water's points, WaterLayer::drag [Pa s/m2 per volume of water].
 #pragma once
 
 #include <cmath>
@@ -24,6 +25,26 @@ double water_floor(const World<D>& world) {
   constexpr double kNoWater = 1e-26;  // as a share of a cell of water
   return kNoWater * world.scene.water.density * std::pow(world.scene.grid.cell, D);
 }
+
+// One node; components of velocities. fixed: a boundary gives the grains the velocity `own`; wall: one holds
+// the water's, and takes its momentum, so that grains drag on something immovable.
+struct NodeDrag {
+  double soil = 0, water = 0;  // masses [kg]
+  double b = 0;                // dt B / M_w; infinite: soil holds its water
+
+  double share() const { return std::isinf(b) ? 1 : b / (1 + b); }
+  // P - v~.
+  double push(double w, double own, bool fixed, bool wall) const {
+    if (wall) return fixed || std::isinf(b) ? 0 : b * water / soil * w;
+    return share() * water / soil * (w - (fixed ? own : 0.0));
+  }
+  // Mass that moves with grains which nothing holds, over their own: v = P over this.
+  double carried(bool wall) const {
+    if (wall) return std::isinf(b) ? 1 : 1 + b * water / soil;
+    return 1 + share() * water / soil;
+  }
+  double water_after(double w, double v) const { return std::isinf(b) ? v : (w + b * v) / (1 + b); }
+};
 
 // First half, before the boundaries: P in place of the trial velocity of the grains. end: time at the end of
 // the step [s].

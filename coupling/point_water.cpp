@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/error.hpp"
 #include "core/threads.hpp"
+#include "coupling/drag_exchange.hpp"
 #include "coupling/point_pressure.hpp"
 #include "coupling/point_quadrature.hpp"
 #include "coupling/point_sides.hpp"
@@ -15,7 +17,6 @@ namespace polder::coupling {
 namespace {
 
 constexpr int kStride = 4;
-constexpr double kNoWater = 1e-26;  // mass of a node, as a share of a cell of water, that feels no force
 constexpr int kLimitInterval = 64;  // steps between two looks at the step limit
 
 template <int D>
@@ -32,11 +33,6 @@ struct NodeSums {
       : soil(&world.skeleton.sums()[static_cast<std::size_t>(i) * 8]),
         water(&world.pore_water->points->sums[static_cast<std::size_t>(i) * 8]) {}
 };
-
-template <int D>
-double water_floor(const World<D>& world) {
-  return kNoWater * world.scene.water.density * std::pow(world.scene.grid.cell, D);
-}
 
 // n of the soil at a node.
 template <int D>
@@ -70,6 +66,18 @@ void scatter_water(World<D>& world) {
   push_at_sides(world);
 }
 
+// Drag of a node with grains and water. locked: the soil holds its water.
+template <int D>
+NodeDrag node_drag(const World<D>& world, int i, double dt, bool locked = false) {
+  const NodeSums<D> s(world, i);
+  const double n = porosity_of(s, world.scene.water.density);
+  NodeDrag node{s.soil[0], s.water[0]};
+  if (node.soil > world.skeleton.mass_floor() && node.water > water_floor(world))
+    node.b = locked ? std::numeric_limits<double>::infinity()
+                    : dt * n * n * world.unit_weight() * s.water[kVolume<D>] / node.water;
+  return node;
+}
+
 double damped(double a, double v, double damping) {
   return a * v > 0 ? (1 - damping) * a : a * v < 0 ? (1 + damping) * a : a;
 }
@@ -95,52 +103,60 @@ void predict_water(World<D>& world, const StepInput& in, const Point<D>& gravity
   w.walls.apply(in.time + in.dt, in.dt, w.sums, w.velocity, false, false);
 }
 
-enum class Exchange { by_old_velocities, implicit_, locked };
-
-// Drag between the trial velocities of grains and water at each node, b = dt B / M_w,
-//   M_s (v - v~) = - M_w (w - w~) = dt B (w - v),
-// on the right hand the velocities of the last step, or those after the exchange (in closed form), or,
-// locked, B without bounds: water that is held in its soil. Where a boundary holds the grains they do not
-// give way to the water; the reaction goes into their trial velocity all the same, from where the boundary
-// takes it.
+// Drag by the velocities of the last step, explicitly. Where a boundary holds the grains it takes the
+// reaction from their trial velocity.
 template <int D>
-void exchange_drag(World<D>& world, double end, double dt, Exchange how) {
+void drag_by_old_velocities(World<D>& world, double dt) {
+  PointWater<D>& w = *world.pore_water->points;
+  mpm::Skeleton<D>& skeleton = world.skeleton;
+  const std::vector<std::uint8_t>& walled = w.walls.held_components();
+  parallel_for(skeleton.grid().slots(), [&](int i) {
+    const NodeDrag node = node_drag(world, i, dt);
+    for (int d = 0; d < D && node.b > 0; ++d) {
+      const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
+      const double push = node.b * (w.velocity_old[j] - skeleton.v_old()[j]);
+      skeleton.v_trial()[j] += node.water / node.soil * push;
+      if (!(walled[i] >> d & 1)) w.velocity[j] -= push;
+    }
+  });
+}
+
+// The halves of an implicit exchange, before and after the boundaries of the grains (drag_exchange.hpp).
+// locked: soil holds its water.
+template <int D>
+void push_by_drag(World<D>& world, double end, double dt, bool locked) {
   PointWater<D>& w = *world.pore_water->points;
   mpm::Skeleton<D>& skeleton = world.skeleton;
   const std::vector<std::uint8_t>& held = skeleton.boundaries().held_components();
   const std::vector<std::uint8_t>& walled = w.walls.held_components();
-  const double density = world.scene.water.density, floor = water_floor(world), weight = world.unit_weight();
   Reals& trial = skeleton.v_trial();
   w.grains = trial;
   skeleton.boundaries().apply(end, dt, skeleton.sums(), w.grains, false, false);
   parallel_for(skeleton.grid().slots(), [&](int i) {
-    const NodeSums<D> s(world, i);
-    const double soil = s.soil[0], water = s.water[0], n = porosity_of(s, density);
-    if (!(soil > skeleton.mass_floor() && water > floor)) return;
-    const double b = dt * n * n * weight * s.water[kVolume<D>] / water;
-    // After an implicit exchange: shares of water and grains in each other's velocity.
-    const bool locked = how == Exchange::locked;
-    const double free = locked ? 0 : soil / (soil + b * (soil + water));
-    const double common = (1 - free) / (soil + water);
+    const NodeDrag node = node_drag(world, i, dt, locked);
     for (int d = 0; d < D; ++d) {
       const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
-      const bool fixed = held[i] >> d & 1, wall = walled[i] >> d & 1;
-      double &v = trial[j], &u = w.velocity[j];
-      if (how == Exchange::by_old_velocities) {
-        const double push = b * (w.velocity_old[j] - skeleton.v_old()[j]);
-        v += water / soil * push;
-        if (!wall) u -= push;
-      } else if (wall) {
-        if (!fixed && !locked) v = (v + b * water / soil * u) / (1 + b * water / soil);
-      } else if (fixed) {
-        const double before = u;
-        u = locked ? w.grains[j] : (u + b * w.grains[j]) / (1 + b);
-        v += water / soil * (before - u);
-      } else {
-        const double momentum = soil * v + water * u, v0 = v, u0 = u;
-        v = free * v0 + common * momentum;
-        u = free * u0 + common * momentum;
-      }
+      if (node.b > 0) trial[j] += node.push(w.velocity[j], w.grains[j], held[i] >> d & 1, walled[i] >> d & 1);
+      w.grains[j] = trial[j];
+    }
+  });
+}
+
+template <int D>
+void share_drag(World<D>& world, double dt, bool locked) {
+  PointWater<D>& w = *world.pore_water->points;
+  mpm::Skeleton<D>& skeleton = world.skeleton;
+  const std::vector<std::uint8_t>& held = skeleton.boundaries().held_components();
+  const std::vector<std::uint8_t>& walled = w.walls.held_components();
+  parallel_for(skeleton.grid().slots(), [&](int i) {
+    const NodeDrag node = node_drag(world, i, dt, locked);
+    for (int d = 0; d < D && node.b > 0; ++d) {
+      const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
+      double& v = skeleton.v_new()[j];
+      const bool stopped = (held[i] >> d & 1) || (v == 0 && w.grains[j] != 0);
+      const bool wall = walled[i] >> d & 1;
+      if (!stopped) v /= node.carried(wall);
+      if (!wall) w.velocity[j] = node.water_after(w.velocity[j], v);
     }
   });
 }
@@ -305,16 +321,21 @@ mpm::MoveResult step_point_water(World<D>& world, const StepInput& in, long step
     push_by_points(world);
   }
   skeleton.predict(in.dt, gravity, in.damping, &water.acceleration);
+  const bool by_old_velocities = in.water_flows && world.scene.numerics.drag == DragStep::by_last_velocities;
   if (w.relative_inertia) {
     Stopwatch watch(water.wall_seconds);
     predict_water<D>(world, in, gravity);
-    exchange_drag(world, end, in.dt,
-                  !in.water_flows                                             ? Exchange::locked
-                  : world.scene.numerics.drag == DragStep::by_last_velocities ? Exchange::by_old_velocities
-                                                                              : Exchange::implicit_);
-    w.walls.apply(end, in.dt, w.sums, w.velocity, false, false);
+    if (by_old_velocities)
+      drag_by_old_velocities(world, in.dt);
+    else
+      push_by_drag(world, end, in.dt, !in.water_flows);
   }
   skeleton.constrain(end, in.dt);
+  if (w.relative_inertia) {
+    Stopwatch watch(water.wall_seconds);
+    if (!by_old_velocities) share_drag(world, in.dt, !in.water_flows);
+    w.walls.apply(end, in.dt, w.sums, w.velocity, false, false);
+  }
   water.correction.clear();
   const Reals& grains = skeleton.strain_velocity(end, in.dt);
   {

@@ -11,6 +11,7 @@
 #include "coupling/point_water.hpp"
 #include "coupling/stopwatch.hpp"
 #include "fdm/mixture_flow.hpp"
+#include "mpm/point_stencil.hpp"
 
 namespace polder::coupling {
 namespace {
@@ -132,27 +133,9 @@ void take_back_drift(World<D>& world) {
     const auto range = set.ranges[block];
     for (int p = range.first; p < range.first + range.count; ++p) {
       if (set.id[p] < 0) continue;
-      Index<D> base;
-      double share[D];
-      for (int d = 0; d < D; ++d) {
-        const double x = (set.position[d][p] - grid.origin()[d]) / h;
-        base[d] = std::clamp(static_cast<int>(std::floor(x)), 0, grid.cells()[d] - 1);
-        share[d] = x - base[d];
-      }
-      Point<D> u{};
-      for (int k = 0; k < ipow(2, D); ++k) {
-        Index<D> node = base;
-        double weight = 1;
-        for (int d = 0; d < D; ++d) {
-          const int one = k >> d & 1;
-          node[d] += one;
-          weight *= one ? share[d] : 1 - share[d];
-        }
-        const int slot = grid.slot(node);
-        if (slot < 0) continue;
-        for (int d = 0; d < D; ++d)
-          u[d] += weight * layer.displacement[static_cast<std::size_t>(slot) * kStride + d];
-      }
+      Point<D> x;
+      for (int d = 0; d < D; ++d) x[d] = set.position[d][p];
+      const Point<D> u = mpm::interpolate<D>(grid, mpm::ShapeKind::linear, x, layer.displacement, kStride);
       for (int d = 0; d < D; ++d) {
         const double move = std::clamp(u[d], -0.1 * h, 0.1 * h);
         set.position[d][p] += move;
