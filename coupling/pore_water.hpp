@@ -82,7 +82,7 @@ struct VolumeFeedback {
 // A node on a side of the grid through which water may pass.
 struct SideNode {
   int slot, axis, outward, boundary;  // the last: number in Scene::water_boundaries
-  double height;                      // [m]
+  double height;                      // mean of the soil around it [m]
 };
 
 // What water on the skeleton's points needs (point_water.hpp).
@@ -93,10 +93,12 @@ struct PointWater {
 
   bool relative_inertia;  // points carry a velocity of the water
   mpm::Transfer<D> transfer;
-  mpm::BoundarySet<D> walls;         // of the water
-  std::vector<SideNode> sides;       // where water may pass
-  std::vector<SideNode> frictional;  // on walls with friction that hold the water
-  std::uint64_t revision = 0;        // of the grid that the nodal fields belong to
+  mpm::BoundarySet<D> walls;                       // of the water
+  std::vector<SideNode> sides;                     // where water may pass
+  std::vector<std::array<double, 2>> height_sums;  // of nodes: volume and its moment of height; work space
+  std::vector<int> side_blocks;                    // whose points reach those with a head
+  std::vector<SideNode> frictional;                // on walls with friction that hold the water
+  std::uint64_t revision = 0;                      // of the grid that the nodal fields belong to
   // Nodes: sums of mpm::scatter_pore_water [slots * 8]; velocities of the water before and after the step,
   // and as its points' momenta give them; flow relative to the grains; trial velocity of the grains under
   // their boundaries [slots * 4].

@@ -18,9 +18,6 @@ using coupling::InitialStress;
 using coupling::Stage;
 using coupling::WaterSpec;
 
-namespace {
-
-// Degree of consolidation and isochrone of Terzaghi (1943) for a layer drained at depth 0, closed at depth 1.
 double terzaghi_pressure(double time_factor, double depth) {
   double sum = 0;
   for (int m = 0; m < 400; ++m) {
@@ -29,6 +26,7 @@ double terzaghi_pressure(double time_factor, double depth) {
   }
   return sum;
 }
+
 double terzaghi_degree(double time_factor) {
   double sum = 0;
   for (int m = 0; m < 400; ++m) {
@@ -37,6 +35,8 @@ double terzaghi_degree(double time_factor) {
   }
   return 1 - sum;
 }
+
+namespace {
 
 // ---- reference tables
 

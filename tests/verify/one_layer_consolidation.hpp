@@ -9,6 +9,11 @@
 
 namespace polder::verify {
 
+// Terzaghi (1943), a layer drained at depth 0 and closed at depth 1: excess pressure over the load, and
+// settlement over the final one.
+double terzaghi_pressure(double time_factor, double depth);
+double terzaghi_degree(double time_factor);
+
 struct Consolidation {
   std::vector<double> pressure_error;  // L2 norm over the load at each of the times [-]
   double settlement_ratio = 0;         // settlement over the reference's at the last time [-]

@@ -119,6 +119,22 @@ void jitter_table() {
   }
 }
 
+void level_table() {
+  std::printf(
+      "| formulation | k [m/s] | point_pressure | discharge | pressure over the head that drives it "
+      "|\n|---|---|---|---|---|\n");
+  using enum coupling::PointPressure;
+  for (const char* f : kPoints)
+    for (const double k : {1e-3, 1e-4})
+      for (const coupling::PointPressure p : {cell_mean, mixed}) {
+        const LevelSeepage r = level_seepage(
+            {.formulation = f, .conductivity = k, .bulk_modulus = 2.2e7, .point_pressure = p}, 4);
+        std::printf("| `%s` | %g | %s | %+.2f %% | %.1e |\n", f, k, name_of(p), 100 * r.outflow_error,
+                    r.pressure_error);
+        std::fflush(stdout);
+      }
+}
+
 void rest_table() {
   std::printf("| formulation | surface | pressure | stress, points | stress, cells | speed [m/s] |\n");
   std::printf("|---|---|---|---|---|---|\n");
@@ -219,6 +235,7 @@ int main(int count, char** names) {
                        {"harmonic", harmonic_table},
                        {"jitter", jitter_table},
                        {"rest", rest_table},
+                       {"level", level_table},
                        {"slump", slump_table},
                        {"stability", stability_table},
                        {"implicit", implicit_table}},

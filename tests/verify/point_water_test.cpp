@@ -12,6 +12,7 @@
 #include "tests/verify/one_layer_limit.hpp"
 #include "tests/verify/one_layer_rest.hpp"
 #include "tests/verify/point_water_scenes.hpp"
+#include "tests/verify/two_layer_scenes.hpp"
 #include "tests/verify/two_layer_waves.hpp"
 
 using namespace polder;
@@ -92,6 +93,18 @@ TEST_CASE("a prescribed pressure at the base drives Darcy's flow") {
     CHECK(r.pressure_error < 0.003);
     CHECK(std::abs(r.water_error) < 1e-9);
   }
+}
+
+TEST_CASE("seepage along a base that holds the soil by friction: water on it is held by drag") {
+  set_threads(1);
+  for (const char* f : kFormulations)
+    for (const double k : {1e-3, 1e-4}) {
+      const LevelSeepage r = level_seepage({.formulation = f, .conductivity = k, .bulk_modulus = 2.2e7}, 4);
+      CAPTURE(f);
+      CAPTURE(k);
+      CHECK(std::abs(r.outflow_error) < 0.005);
+      CHECK(r.pressure_error < 0.005);
+    }
 }
 
 TEST_CASE("a slump is that of a projected pressure; without cell means the points' pressures run apart") {

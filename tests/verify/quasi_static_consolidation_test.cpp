@@ -4,12 +4,11 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "core/threads.hpp"
-#include "tests/verify/one_layer_scenes.hpp"
+#include "tests/verify/one_layer_consolidation.hpp"
 
 using namespace polder;
 using namespace polder::verify;
@@ -18,25 +17,6 @@ using coupling::Stage;
 namespace {
 
 constexpr double kLoad = 1e4, kHeight = 1, kCell = 0.1, kConductivity = 5e-4;
-
-// Isochrone of a layer drained at depth 0 and closed at depth 1, over the load (Terzaghi 1943).
-double isochrone(double time_factor, double depth) {
-  double sum = 0;
-  for (int m = 0; m < 200; ++m) {
-    const double a = std::numbers::pi * (2 * m + 1) / 2;
-    sum += 2 / a * std::sin(a * depth) * std::exp(-a * a * time_factor);
-  }
-  return sum;
-}
-
-double degree(double time_factor) {
-  double sum = 0;
-  for (int m = 0; m < 200; ++m) {
-    const double a = std::numbers::pi * (2 * m + 1) / 2;
-    sum += 2 / (a * a) * std::exp(-a * a * time_factor);
-  }
-  return 1 - sum;
-}
 
 mpm::MaterialParameters sand() {
   return elastic_soil(1e7, 0.3, 0.46, kConductivity, 2700);
@@ -95,12 +75,12 @@ Found consolidate(double relax_change, bool retains) {
     int cells = 0;
     for (double y = 0.5 * kCell; y < kHeight; y += kCell, ++cells) {
       const double e = simulation.cell_quantity({0.5 * kCell, y, 0}, "pore_pressure") / kLoad -
-                       isochrone(factor, kHeight - y);
+                       terzaghi_pressure(factor, kHeight - y);
       sum += e * e;
     }
     f.error[i] = std::sqrt(sum / cells);
   }
-  f.settlement = (kHeight - top_of(simulation)) / (degree(0.5) * kLoad * kHeight / wave_modulus());
+  f.settlement = (kHeight - top_of(simulation)) / (terzaghi_degree(0.5) * kLoad * kHeight / wave_modulus());
   f.relaxations = column_of(simulation, "relaxations");
   f.water_error = column_of(simulation, "water_mass_error[-]");
   f.unaccounted = column_of(simulation, "relaxation_water[m3]");
@@ -122,7 +102,8 @@ TEST_CASE("Terzaghi's column by quasi-static stages") {
       const Found f = consolidate(share * kLoad, retains);
       // Every litre that pores gave up went through the cells, but for what the last relaxation asked for.
       CHECK(std::abs(f.water_error) < 1e-12);
-      CHECK(std::abs(f.unaccounted) < 0.5 * share * degree(0.5) * kLoad / wave_modulus() * 2 * kCell);
+      CHECK(std::abs(f.unaccounted) <
+            0.5 * share * terzaghi_degree(0.5) * kLoad / wave_modulus() * 2 * kCell);
       for (const double error : f.error) CHECK(error < 0.2 * share + 0.003);
       CHECK(std::abs(f.settlement - 1) < 0.3 * share);
       if (!runs.empty())

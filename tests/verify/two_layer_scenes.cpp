@@ -196,6 +196,26 @@ double drag_rate(double conductivity) {
          (1 / ((1 - kPorosity) * kDensitySolid) + 1 / (kPorosity * kDensityWater));
 }
 
+void give_water_speed(Simulation& sim, double speed) {
+  MemoryState state;
+  state.save(sim);
+  Reals& velocity = state.arrays.at("water/velocity_x");
+  const std::vector<int>& id = state.lists.at("water/id");
+  for (std::size_t p = 0; p < velocity.size(); ++p)
+    if (id[p] >= 0) velocity[p] = speed;
+  state.load(sim);
+}
+
+double relative_speed(const Simulation& sim) {
+  double grains = 0, water = 0;
+  const PointFrame soil = sim.points({"velocity"}), fluid = sim.water_points();
+  for (std::size_t p = 0; p < soil.count(); ++p)
+    grains += soil.fields[0].values[3 * p] / static_cast<double>(soil.count());
+  for (std::size_t p = 0; p < fluid.count(); ++p)
+    water += fluid.fields[0].values[3 * p] / static_cast<double>(fluid.count());
+  return water - grains;
+}
+
 Exchange exchange_of_momentum(const Choice& c, double speed, int steps) {
   const double h = c.cell;
   Scene s = wet_scene(c, 16 * h, 16 * h, 1e9);
@@ -205,25 +225,10 @@ Exchange exchange_of_momentum(const Choice& c, double speed, int steps) {
   s.water.initial = WaterSpec::Initial::zero;
   s.water.bulk_modulus = 1e-12;
   Simulation sim(s);
-  MemoryState state;
-  state.save(sim);
-  Reals& velocity = state.arrays.at("water/velocity_x");
-  const std::vector<int>& id = state.lists.at("water/id");
-  for (std::size_t p = 0; p < velocity.size(); ++p)
-    if (id[p] >= 0) velocity[p] = speed;
-  state.load(sim);
+  give_water_speed(sim, speed);
 
   const auto momentum = [&](int axis) {
     return column_of(sim, axis == 0 ? "momentum_x[kg m/s]" : "momentum_y[kg m/s]");
-  };
-  const auto relative = [&] {  // means of the layers
-    double grains = 0, water = 0;
-    const PointFrame soil = sim.points({"velocity"}), fluid = sim.water_points();
-    for (std::size_t p = 0; p < soil.count(); ++p)
-      grains += soil.fields[0].values[3 * p] / static_cast<double>(soil.count());
-    for (std::size_t p = 0; p < fluid.count(); ++p)
-      water += fluid.fields[0].values[3 * p] / static_cast<double>(fluid.count());
-    return water - grains;
   };
   const double first = momentum(0);
   const double rate = drag_rate(c.conductivity);
@@ -235,8 +240,8 @@ Exchange exchange_of_momentum(const Choice& c, double speed, int steps) {
     r.momentum_error =
         std::max({r.momentum_error, std::abs(momentum(0) - first) / first, std::abs(momentum(1)) / first});
   }
-  r.relative = relative() / speed;
-  r.decay_error = relative() / expected - 1;
+  r.relative = relative_speed(sim) / speed;
+  r.decay_error = relative_speed(sim) / expected - 1;
   r.explicit_ratio = sim.last_step() * rate / 2;
   return r;
 }

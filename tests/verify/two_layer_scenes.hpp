@@ -51,6 +51,10 @@ struct Exchange {
   double explicit_ratio = 0;  // step over 2 / r, the limit of explicit drag [-]
   double relative = 0;        // relative velocity left over the one at the start [-]
 };
+// Gives all points of the water the velocity `speed` along x [m/s]; mean velocity of the water relative to
+// the grains along x, each the mean over its points.
+void give_water_speed(Simulation& simulation, double speed);
+double relative_speed(const Simulation& simulation);
 // The water starts with `speed`, the soil at rest.
 Exchange exchange_of_momentum(const Choice& choice, double speed, int steps);
 // Rate r at which drag takes relative velocity away in soil of porosity 0.4 [1/s].

@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "coupling/drag_law.hpp"
-#include "coupling/memory_state.hpp"
+#include "tests/verify/two_layer_scenes.hpp"
 
 namespace polder::verify {
 
-using coupling::PointFrame;
 using coupling::WaterBoundary;
 using coupling::WaterSpec;
 
@@ -88,22 +87,7 @@ Slowing slowing(const Choice& c, const coupling::Material& material, int steps) 
   s.water.initial = WaterSpec::Initial::zero;
   s.water.bulk_modulus = 1e-12;
   Simulation sim(s);
-  coupling::MemoryState state;
-  state.save(sim);
-  Reals& velocity = state.arrays.at("water/velocity_x");
-  const std::vector<int>& id = state.lists.at("water/id");
-  for (std::size_t p = 0; p < velocity.size(); ++p)
-    if (id[p] >= 0) velocity[p] = kSpeed;
-  state.load(sim);
-  const auto relative = [&] {
-    double grains = 0, water = 0;
-    const PointFrame soil = sim.points({"velocity"}), fluid = sim.water_points();
-    for (std::size_t p = 0; p < soil.count(); ++p)
-      grains += soil.fields[0].values[3 * p] / static_cast<double>(soil.count());
-    for (std::size_t p = 0; p < fluid.count(); ++p)
-      water += fluid.fields[0].values[3 * p] / static_cast<double>(fluid.count());
-    return water - grains;
-  };
+  give_water_speed(sim, kSpeed);
   const double first = column_of(sim, "momentum_x[kg m/s]");
   const coupling::Material& m = s.materials[0];
   const coupling::DragFluid water{s.water.density, s.water.viscosity, kUnitWeight};
@@ -115,12 +99,12 @@ Slowing slowing(const Choice& c, const coupling::Material& material, int steps) 
     const double rate = coupling::drag_coefficient(m, water, n, seen) * masses;
     expected /= 1 + rate * sim.last_step();
     seen = expected;
-    r.decay_error = std::max(r.decay_error, std::abs(relative() - expected) / kSpeed);
+    r.decay_error = std::max(r.decay_error, std::abs(relative_speed(sim) - expected) / kSpeed);
     r.momentum_error =
         std::max({r.momentum_error, std::abs(column_of(sim, "momentum_x[kg m/s]") - first) / first,
                   std::abs(column_of(sim, "momentum_y[kg m/s]")) / first});
   }
-  r.relative = relative() / kSpeed;
+  r.relative = relative_speed(sim) / kSpeed;
   return r;
 }
 
