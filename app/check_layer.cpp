@@ -130,6 +130,14 @@ void check_water_layer(Reader& reader) {
       reader.error(
           key, "formulation \"" + scene.formulation + "\" has no unsaturated flow in this version",
           "no retention; pore_water.saturation_above, suction_above; or formulation = \"one-layer\"");
+  if (coupling::find_formulation(scene.formulation)->inertia == coupling::RelativeInertia::neglected)
+    for (const coupling::Material& m : scene.materials)
+      if (const std::string key = "material." + m.name + ".density_solid";
+          m.porosity > 0 && m.density_solid <= scene.water.density && !reader.failed(key))
+        reader.error(key,
+                     "grains not heavier than water with formulation \"" + scene.formulation +
+                         "\", which neglects the inertia of the water relative to them",
+                     "more than pore_water.density; or formulation = \"two-layer\"");
   if (scene.grid.space == Space::axisymmetric && !reader.failed("grid.space"))
     reader.error("grid.space",
                  "formulation \"" + scene.formulation + "\" is not in this version for an axisymmetric grid",

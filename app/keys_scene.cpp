@@ -140,7 +140,8 @@ const Table<NumericsSpec>& numerics_keys() {
           "Time step as a share of cell over drained wave speed, with formulations higo, u-p and v-w of what "
           "the "
           "water allows, which is far less; the stable limit, 1.7 or more for musl, is what explain prints. "
-          "Damped stages take 1 at most, because damping shortens it; formulation two-layer 0.5.")
+          "Damped stages take 1 at most, because damping shortens it; formulations with particles of water "
+          "0.5.")
         .only_with("time_step", "time_step absent", [](const NumericsSpec& n) { return !n.time_step; });
     t.add("rhie_chow", number(dimension::kNone, {.min = 0, .max = 1}), &NumericsSpec::rhie_chow,
           "Coefficient of the term that damps checkerboard patterns of the pore pressure.");

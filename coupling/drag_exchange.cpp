@@ -14,14 +14,40 @@ constexpr double kLeastPorosity = 0.05;
 
 template <int D>
 NodeDrag node_drag(const World<D>& world, int i, double dt, double floor) {
-  const double* water = &world.pore_water->layer->fluid.sums()[static_cast<std::size_t>(i) * 8];
+  const WaterLayer<D>& layer = *world.pore_water->layer;
+  const double* water = &layer.fluid.sums()[static_cast<std::size_t>(i) * 8];
   NodeDrag n{world.skeleton.sums()[static_cast<std::size_t>(i) * 8], water[0]};
-  if (n.soil > world.skeleton.mass_floor() && n.water > floor)
-    n.b = dt * water[mpm::FluidLayer<D>::kDrag] / n.water;
+  if (!(n.soil > world.skeleton.mass_floor() && n.water > floor)) return n;
+  n.b = dt * water[mpm::FluidLayer<D>::kDrag] / n.water;
+  if (!layer.relative_inertia && n.b > 0) n.tied = layer.tied[i];
   return n;
 }
 
 }  // namespace
+
+template <int D>
+void find_tied_water(World<D>& world) {
+  WaterLayer<D>& layer = *world.pore_water->layer;
+  const Grid<D>& grid = world.skeleton.grid();
+  const double floor = water_floor(world);
+  layer.tied.resize(grid.slots());
+  parallel_for(grid.slots(), [&](int i) {
+    layer.tied[i] = 0;
+    if (!(world.skeleton.sums()[static_cast<std::size_t>(i) * 8] > world.skeleton.mass_floor()) ||
+        !(layer.fluid.sums()[static_cast<std::size_t>(i) * 8] > floor))
+      return;
+    double in_pores = 0, all = 0;
+    for (int corner = 0; corner < ipow(2, D); ++corner) {
+      Index<D> cell = grid.index(i);
+      for (int d = 0; d < D; ++d) cell[d] -= corner >> d & 1;
+      const int slot = grid.slot(cell);
+      if (slot < 0) continue;
+      const double water = layer.sums[static_cast<std::size_t>(slot) * 4];
+      in_pores += layer.in_pores[slot] * water, all += water;
+    }
+    if (all > 0) layer.tied[i] = in_pores / all;
+  });
+}
 
 template <int D>
 void push_by_drag(World<D>& world, double end, double dt) {
@@ -30,6 +56,7 @@ void push_by_drag(World<D>& world, double end, double dt) {
   const std::vector<std::uint8_t>& held = skeleton.boundaries().held_components();
   const std::vector<std::uint8_t>& walled = layer.fluid.held_components();
   const double floor = water_floor(world);
+  const Reals &grains_old = skeleton.v_old(), &water_old = layer.fluid.velocity_old();
   Reals& trial = skeleton.v_trial();
   layer.grains = trial;
   skeleton.boundaries().apply(end, dt, skeleton.sums(), layer.grains, false, false);
@@ -38,8 +65,11 @@ void push_by_drag(World<D>& world, double end, double dt) {
     for (int d = 0; d < D; ++d) {
       const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
       const double own = layer.grains[j];  // where a boundary holds the grains
+      const bool fixed = held[i] >> d & 1, wall = walled[i] >> d & 1;
       if (node.b > 0)
-        trial[j] += node.push(layer.fluid.velocity()[j], own, held[i] >> d & 1, walled[i] >> d & 1);
+        trial[j] +=
+            node.push(node.trial(layer.fluid.velocity()[j], water_old[j], fixed ? own : grains_old[j], wall),
+                      own, fixed, wall);
       layer.grains[j] = trial[j];
     }
   });
@@ -52,10 +82,13 @@ void share_drag(World<D>& world, double dt) {
   const std::vector<std::uint8_t>& held = skeleton.boundaries().held_components();
   const std::vector<std::uint8_t>& walled = layer.fluid.held_components();
   const double per_density = 1 / world.scene.water.density, floor = water_floor(world);
+  const Reals &grains_old = skeleton.v_old(), &water_old = layer.fluid.velocity_old();
   Reals& velocity = skeleton.v_new();
   for (Reals* r : {&layer.water, &layer.grains_response, &layer.water_response}) r->resize(velocity.size());
+  if (!layer.relative_inertia) layer.following.resize(skeleton.grid().slots());
   parallel_for(skeleton.grid().slots(), [&](int i) {
     const NodeDrag node = node_drag(world, i, dt, floor);
+    if (!layer.relative_inertia) layer.following[i] = node.following();
     const bool has_soil = node.soil > skeleton.mass_floor(), has_water = node.water > floor;
     const double* s = &skeleton.sums()[static_cast<std::size_t>(i) * 8];
     const double push_soil = has_soil ? dt * s[mpm::Transfer<D>::kVolume] / node.soil : 0.0;
@@ -80,7 +113,9 @@ void share_drag(World<D>& world, double dt) {
              node.carried(wall);
       }
       if (wall) continue;
-      layer.water[j] = node.water_after(w, v);
+      // Grains that something stops are not accelerated, whatever velocity their points bring to the node.
+      const double trial = node.trial(w, water_old[j], stopped ? v : grains_old[j], wall);
+      layer.water[j] = node.water_after(trial, v);
       rw = node.water_after(push_water, rs);
     }
   });
@@ -93,7 +128,8 @@ template <int D>
 double relative_speed(const World<D>& world, const ParticleSet<D>& set, int p) {
   const Grid<D>& grid = world.skeleton.grid();
   const mpm::FluidLayer<D>& fluid = world.pore_water->layer->fluid;
-  const Reals& grains = world.skeleton.v_new();
+  const WaterLayer<D>& layer = *world.pore_water->layer;
+  const Reals& grains = layer.relative_inertia ? world.skeleton.v_new() : layer.grains;
   const double floor = water_floor(world);
   Point<D> x;
   for (int d = 0; d < D; ++d) x[d] = set.position[d][p];
@@ -140,6 +176,8 @@ void follow_flow(World<D>& world) {
 
 template void follow_flow<2>(World<2>&);
 template void follow_flow<3>(World<3>&);
+template void find_tied_water<2>(World<2>&);
+template void find_tied_water<3>(World<3>&);
 template void push_by_drag<2>(World<2>&, double, double);
 template void push_by_drag<3>(World<3>&, double, double);
 template void share_drag<2>(World<2>&, double);

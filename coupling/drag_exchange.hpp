@@ -10,6 +10,14 @@
 // the grains move as if they carried the share a of the water with them. The boundaries act on P, and take
 // from it the impulse that they really feel, friction included. In two layers B comes from the drag of the
 // cells at the water's points, WaterLayer::drag [Pa s/m2 per volume of water].
+//
+// Where the acceleration of water relative to the grains is neglected (two-layer-darcy; Abe, Soga & Bandara
+// 2014), water in pores is accelerated as the grains are, and only what stands beside the soil by itself.
+// With t the share of a node's water that is in pores,
+//   M_w [(1 - t)(w - w^n) + t (v - v^n)] = dt F_w - dt B (w - v):
+// for t = 1 Darcy's law for the velocity of the water relative to the grains, with the mixture's acceleration
+// in it, and M_s + M_w moved by F_s + F_w; for t = 0 the above. It has the same form, with
+//   w~ + t (v^n - w^n) in place of w~,   a = b / (1 - t + b),   w = [w~ + (b - t) v] / (1 - t + b).
 #pragma once
 
 #include <cmath>
@@ -31,8 +39,13 @@ double water_floor(const World<D>& world) {
 struct NodeDrag {
   double soil = 0, water = 0;  // masses [kg]
   double b = 0;                // dt B / M_w; infinite: soil holds its water
+  double tied = 0;             // t
 
-  double share() const { return std::isinf(b) ? 1 : b / (1 + b); }
+  double share() const { return std::isinf(b) ? 1 : b / (1 - tied + b); }
+  // Trial velocity w~ of the water, from what it was and what the grains had; nothing is tied at a wall.
+  double trial(double w, double water_old, double grains_old, bool wall) const {
+    return wall ? w : w + tied * (grains_old - water_old);
+  }
   // P - v~.
   double push(double w, double own, bool fixed, bool wall) const {
     if (wall) return fixed || std::isinf(b) ? 0 : b * water / soil * w;
@@ -43,8 +56,16 @@ struct NodeDrag {
     if (wall) return std::isinf(b) ? 1 : 1 + b * water / soil;
     return 1 + share() * water / soil;
   }
-  double water_after(double w, double v) const { return std::isinf(b) ? v : (w + b * v) / (1 + b); }
+  double water_after(double w, double v) const {
+    return std::isinf(b) ? v : (w + (b - tied) * v) / (1 - tied + b);
+  }
+  // Change of the velocity of tied water with that of the grains.
+  double following() const { return b > 0 ? tied * (b - tied) / (1 - tied + b) : 0; }
 };
+
+// Share of the nodes' water that is in pores, WaterLayer::tied, from that of the cells around.
+template <int D>
+void find_tied_water(World<D>& world);
 
 // First half, before the boundaries: P in place of the trial velocity of the grains. end: time at the end of
 // the step [s].
@@ -52,8 +73,8 @@ template <int D>
 void push_by_drag(World<D>& world, double end, double dt);
 
 // Second half, after them: the velocities of both layers, and what a unit pressure gradient over the step
-// does to them (WaterLayer: water, grains_response, water_response). Grains that a boundary holds, or that
-// friction stops, do not give way to the water.
+// does to them (WaterLayer: water, following, grains_response, water_response). Grains that a boundary holds,
+// or that friction stops, do not give way to the water.
 template <int D>
 void share_drag(World<D>& world, double dt);
 

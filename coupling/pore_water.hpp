@@ -48,18 +48,23 @@ struct WaterLayer {
       : fluid(grid, scene.grid.space, scene.grid.shape,
               scene.numerics.water_transfer == Transfer::apic ? mpm::AffineKind::apic : mpm::AffineKind::none,
               scene.numerics.water_flip, std::move(boundaries)),
-        correction(cells) {
+        correction(cells),
+        relative_inertia(find_formulation(scene.formulation)->inertia == RelativeInertia::kept) {
     if (scene.water.viscous) viscosity = std::make_unique<WaterViscosity<D>>(grid, scene.water.viscosity);
   }
 
   mpm::FluidLayer<D> fluid;
   fdm::VolumeCorrection<D> correction;
+  bool relative_inertia;                         // of water in pores, kept
   std::unique_ptr<WaterViscosity<D>> viscosity;  // where the scene asks for it
   double spacing = 0;                            // of new points [m]
   // Cells (slots): volume of the water's points; share taken by soil, its pores included; resistance of the
   // pores per volume of water [Pa s/m2]; volume that has come in through open sides and has no point yet
   // [m3].
   Reals sums, soil_fill, drag, owed;
+  // Where relative inertia is neglected, share of the water that is in pores: of cells, of nodes [-]; and
+  // change of the nodes' velocity of water with that of the grains.
+  Reals in_pores, tied, following;
   // Nodes (slots * 4): velocities with drag exchanged and their responses to a unit pressure gradient.
   Reals grains, water, grains_response, water_response;
   Reals divergence, face_mobility;  // of cells and faces, see fdm/mixture_flow.hpp

@@ -32,8 +32,7 @@ const std::vector<Formulation>& formulations() {
        "Jassim et al. 2013; sequence of Verruijt 2010"},
       {"three-phase", C::skeleton, I::neglected, P::compressible, S::three_phase, false, "Yerro et al. 2015"},
       {"two-layer", C::particles, I::kept, P::projected, S::saturated, true, "Bandara & Soga 2015"},
-      {"two-layer-darcy", C::particles, I::neglected, P::compressible, S::saturated, false,
-       "Abe et al. 2013"},
+      {"two-layer-darcy", C::particles, I::neglected, P::projected, S::saturated, true, "Abe et al. 2014"},
       {"mixture", C::particles, I::kept, P::compressible, S::saturated, false,
        "Mackenzie-Helnwein et al. 2010; Shin 2010"},
   };

@@ -87,7 +87,7 @@ template <int D>
 double Simulation::Run<D>::fastest_wave() const {
   const double skeleton = world->skeleton.wave_speed(world->materials);
   const bool layered = world->pore_water && world->pore_water->layer;
-  return layered ? std::max(skeleton, surface_wave_speed(*world)) : skeleton;
+  return layered ? std::max(skeleton * wave_factor(scene), surface_wave_speed(*world)) : skeleton;
 }
 
 template <int D>

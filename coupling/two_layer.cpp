@@ -39,11 +39,15 @@ void predict_water(World<D>& world, double end, double dt, const Point<D>& gravi
   fluid.constrain(end, dt, fluid.velocity());
 }
 
-// The mixture's velocities: a node without one of the two layers gives the other's velocity to it.
+// The mixture's velocities: a node without one of the two layers gives the other's velocity to it. Flow that
+// knows no inertia of its own is that of Darcy's law with the velocity, and the acceleration, which strains
+// the soil: with those before the second mapping columns whose surface cuts a cell become unstable at k > 5
+// mm/s.
 template <int D>
 void complete_velocities(World<D>& world, const Reals& grains) {
   WaterLayer<D>& layer = *world.pore_water->layer;
   const mpm::Skeleton<D>& skeleton = world.skeleton;
+  const std::vector<std::uint8_t>& walled = layer.fluid.held_components();
   const double floor = water_floor(world);
   layer.grains.resize(grains.size());
   parallel_for(skeleton.grid().slots(), [&](int i) {
@@ -51,6 +55,8 @@ void complete_velocities(World<D>& world, const Reals& grains) {
     const bool has_water = layer.fluid.sums()[static_cast<std::size_t>(i) * 8] > floor;
     for (int d = 0; d < D; ++d) {
       const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
+      if (!layer.relative_inertia && !(walled[i] >> d & 1))
+        layer.water[j] += layer.following[i] * (grains[j] - skeleton.v_new()[j]);
       layer.grains[j] = has_soil ? grains[j] : layer.water[j];
       if (!has_water) layer.water[j] = layer.grains[j];
     }
@@ -82,6 +88,26 @@ void solve_pressure(World<D>& world, double dt) {
   w.storage += dt * w.pressure.balance().storage;
 }
 
+// What the second mapping of the grains' momenta made of their correction, handed on to the water in pores,
+// which follows the same law. Leaves the grains' velocities in layer.grains.
+template <int D>
+void follow_grains(World<D>& world, double end, double dt) {
+  WaterLayer<D>& layer = *world.pore_water->layer;
+  mpm::Skeleton<D>& skeleton = world.skeleton;
+  const Reals &grains = skeleton.strain_velocity(end, dt), &correction = world.pore_water->correction;
+  const double floor = water_floor(world);
+  parallel_for(skeleton.grid().slots(), [&](int i) {
+    const bool has_soil = skeleton.sums()[static_cast<std::size_t>(i) * 8] > skeleton.mass_floor();
+    const bool has_water = layer.fluid.sums()[static_cast<std::size_t>(i) * 8] > floor;
+    for (int d = 0; d < D && has_soil; ++d) {
+      const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
+      if (has_water)
+        layer.fluid.velocity()[j] += layer.following[i] * (grains[j] - layer.grains[j] - correction[j]);
+      layer.grains[j] = grains[j];
+    }
+  });
+}
+
 // Corrections of both velocities by grad dp.
 template <int D>
 void correct(World<D>& world, double end, double dt) {
@@ -97,8 +123,9 @@ void correct(World<D>& world, double end, double dt) {
       if (d < D) layer.fluid.velocity()[j] = layer.water[j] - layer.water_response[j] * w.node_gradient[j];
     }
   });
-  layer.fluid.constrain(end, dt, layer.fluid.velocity());
   world.skeleton.correct(end, dt, w.correction);
+  if (!layer.relative_inertia) follow_grains(world, end, dt);
+  layer.fluid.constrain(end, dt, layer.fluid.velocity());
 }
 
 template <int D>
@@ -156,6 +183,7 @@ void update_layer_cells(World<D>& world) {
   layer.fluid.scatter_cells(layer.sums);
   layer.drag.resize(grid.slots());
   layer.soil_fill.resize(grid.slots());
+  if (!layer.relative_inertia) layer.in_pores.resize(grid.slots());
   const double cell_volume = std::pow(grid.spacing(), D), unit_weight = world.unit_weight();
   const bool radial = world.scene.grid.space == Space::axisymmetric;
   const bool follows_porosity = world.scene.kozeny_carman();
@@ -181,6 +209,10 @@ void update_layer_cells(World<D>& world) {
     // that is slower by the ratio of the porosities than in the layer.
     const double layer_share = std::min(1.0, soil_fill * volume / mixture) * w.porosity[i] / pores;
     layer.drag[i] = conductivity > 0 ? layer_share * pores * unit_weight / conductivity : 0.0;
+    if (!layer.relative_inertia) {
+      const double of_mixture = std::min(1.0, soil_fill * volume / mixture) * pores / w.porosity[i];
+      layer.in_pores[i] = conductivity > 0 ? std::min(1.0, of_mixture) : 0.0;
+    }
   });
   ParticleSet<D>& water = layer.fluid.points();
   parallel_for(water.slots(), [&](int p) {
@@ -200,6 +232,15 @@ void update_layer_cells(World<D>& world) {
       soil.nodal_weight[p] = submerged * (layer.held ? 1.0 : grains);
     });
   }
+}
+
+double wave_factor(const Scene& scene) {
+  double factor = 1;
+  if (find_formulation(scene.formulation)->inertia == RelativeInertia::kept) return factor;
+  for (const Material& m : scene.materials)
+    if (m.porosity > 0)
+      factor = std::max(factor, std::sqrt(m.density_solid / (m.density_solid - scene.water.density)));
+  return factor;
 }
 
 template <int D>
@@ -232,6 +273,7 @@ mpm::MoveResult step_two_layer(World<D>& world, const StepInput& in, long step) 
   skeleton.predict(in.dt, gravity, in.damping, &w.acceleration);
   predict_water<D>(world, end, in.dt, gravity);
   if (layer.viscosity) layer.viscosity->diffuse(layer.fluid, layer.sums, in.dt, layer.fluid.velocity());
+  if (!layer.relative_inertia) find_tied_water(world);
   push_by_drag(world, end, in.dt);
   skeleton.constrain(end, in.dt);
   share_drag(world, in.dt);

@@ -48,6 +48,11 @@ class HeldWater {
 template <int D>
 mpm::MoveResult step_two_layer(World<D>& world, const StepInput& in, long step);
 
+// Speed of the wave in the skeleton over the one that the inertia of the grains alone gives it. Where the
+// acceleration of water relative to them is neglected, the water's follows theirs and its pressure with it,
+// which pushes on them: (1 - n)(rho_s - rho_w) is left of their inertia in soil of high conductivity.
+double wave_factor(const Scene& scene);
+
 // Speed of long waves on the water's surface, sqrt(g H) with H the height from its lowest to its highest
 // point [m/s].
 template <int D>

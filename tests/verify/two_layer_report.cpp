@@ -1,5 +1,6 @@
 // Prints the tables of docs/validation/two_layer.md: two-layer scenes with known answers, measured with the
 // functions that the tests use.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -16,33 +17,39 @@ using namespace polder::verify;
 
 namespace {
 
-constexpr const char* kFormulations[] = {"one-layer", "two-layer"};
+constexpr const char* kLayered[] = {"two-layer", "two-layer-darcy"};
+constexpr const char* kFormulations[] = {"one-layer", "two-layer", "two-layer-darcy"};
 
 void terzaghi_table() {
   std::printf(
-      "| k [m/s] | surface | T_v = 0.05 | 0.2 | 0.5 | settlement / exact | steps "
-      "|\n|---|---|---|---|---|---|---|\n");
-  for (const double k : {1e-3, 1e-4, 1e-5})
-    for (const double offset : {0.0, 0.25, 0.5, 0.8}) {
-      if (k < 1e-4 && offset > 0) continue;
-      const Consolidation r =
-          terzaghi({.formulation = "two-layer", .conductivity = k, .offset = offset}, {0.05, 0.2, 0.5}, 100);
-      std::printf("| %g | %g | %.4f | %.4f | %.4f | %.4f | %ld |\n", k, offset, r.pressure_error[0],
-                  r.pressure_error[1], r.pressure_error[2], r.settlement_ratio, r.steps);
-    }
+      "| formulation | k [m/s] | surface | T_v = 0.05 | 0.2 | 0.5 | settlement / exact | steps "
+      "|\n|---|---|---|---|---|---|---|---|\n");
+  for (const char* f : kLayered)
+    for (const double k : {1e-3, 1e-4, 1e-5})
+      for (const double offset : {0.0, 0.25, 0.5, 0.8}) {
+        if (k < 1e-4 && offset > 0) continue;
+        const Consolidation r =
+            terzaghi({.formulation = f, .conductivity = k, .offset = offset}, {0.05, 0.2, 0.5}, 100);
+        std::printf("| %s | %g | %g | %.4f | %.4f | %.4f | %.4f | %ld |\n", f, k, offset, r.pressure_error[0],
+                    r.pressure_error[1], r.pressure_error[2], r.settlement_ratio, r.steps);
+        std::fflush(stdout);
+      }
 }
 
 void rest_table() {
-  std::printf("| scene | pressure, RMS | largest | speed [m/s] | drift |\n|---|---|---|---|---|\n");
-  const auto row = [](const char* name, const WaterRest& r) {
-    std::printf("| %s | %.1e | %.1e | %.1e | %.1e |\n", name, r.pressure_error, r.pressure_largest, r.speed,
-                r.drift);
-  };
-  const Choice c{.formulation = "two-layer"};
-  row("soil, jitter 0.5, 1 s", jittered_column(c, 0.5, 1));
-  row("soil, jitter 0.5, 3 s", jittered_column(c, 0.5, 3));
-  row("pond over soil, 2 s", pond_over_soil(c, 0, 2));
-  row("pond over soil, jitter 0.5, 2 s", pond_over_soil(c, 0.5, 2));
+  std::printf(
+      "| formulation | scene | pressure, RMS | largest | speed [m/s] | drift |\n|---|---|---|---|---|---|\n");
+  for (const char* f : kLayered) {
+    const auto row = [&](const char* name, const WaterRest& r) {
+      std::printf("| %s | %s | %.1e | %.1e | %.1e | %.1e |\n", f, name, r.pressure_error, r.pressure_largest,
+                  r.speed, r.drift);
+    };
+    const Choice c{.formulation = f};
+    row("soil, jitter 0.5, 1 s", jittered_column(c, 0.5, 1));
+    row("soil, jitter 0.5, 3 s", jittered_column(c, 0.5, 3));
+    row("pond over soil, 2 s", pond_over_soil(c, 0, 2));
+    row("pond over soil, jitter 0.5, 2 s", pond_over_soil(c, 0.5, 2));
+  }
 }
 
 void hydrostatic_table() {
@@ -60,22 +67,21 @@ void hydrostatic_table() {
 
 void falling_table() {
   std::printf(
-      "| k [m/s] | h [m] | jitter | discharge | pressure, RMS | largest | water | drift, RMS | at the "
-      "interface | "
-      "elsewhere |\n|---|---|---|---|---|---|---|---|---|---|\n");
+      "| formulation | k [m/s] | h [m] | jitter | discharge | pressure, RMS | largest | water | drift, RMS | "
+      "at the interface | elsewhere |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
   struct Run {
     double conductivity, cell, jitter, duration;
   };
-  for (const Run& run :
-       {Run{1e-2, 0.1, 0, 10}, Run{1e-2, 0.1, 0.3, 10}, Run{1e-2, 0.05, 0, 10}, Run{1e-3, 0.1, 0, 40}}) {
-    const FallingHead r =
-        falling_head({.formulation = "two-layer", .cell = run.cell, .conductivity = run.conductivity},
-                     run.jitter, run.duration);
-    std::printf("| %g | %g | %g | %+.1f %% | %.4f | %.4f | %.0e | %.4f | %.4f | %.4f |\n", run.conductivity,
-                run.cell, run.jitter, 100 * r.outflow_error, r.pressure_error, r.pressure_largest,
-                r.water_error, r.drift_rms, r.drift_interface, r.drift_elsewhere);
-    std::fflush(stdout);
-  }
+  for (const char* f : kLayered)
+    for (const Run& run :
+         {Run{1e-2, 0.1, 0, 10}, Run{1e-2, 0.1, 0.3, 10}, Run{1e-2, 0.05, 0, 10}, Run{1e-3, 0.1, 0, 40}}) {
+      const FallingHead r = falling_head(
+          {.formulation = f, .cell = run.cell, .conductivity = run.conductivity}, run.jitter, run.duration);
+      std::printf("| %s | %g | %g | %g | %+.1f %% | %.4f | %.4f | %.0e | %.4f | %.4f | %.4f |\n", f,
+                  run.conductivity, run.cell, run.jitter, 100 * r.outflow_error, r.pressure_error,
+                  r.pressure_largest, r.water_error, r.drift_rms, r.drift_interface, r.drift_elsewhere);
+      std::fflush(stdout);
+    }
 }
 
 void upward_table() {
@@ -97,7 +103,7 @@ void level_table() {
   for (const double k : {1e-3, 1e-4})
     for (const char* f : kFormulations)
       for (const double courant : {0.5, 1.0}) {
-        if (courant > 0.5 && f != kFormulations[0]) continue;  // two layers take no longer steps
+        if (courant > 0.5 && std::string(f) != "one-layer") continue;  // two layers take no longer steps
         const LevelSeepage r = level_seepage({.formulation = f, .courant = courant, .conductivity = k}, 1);
         std::printf("| %s | %g | %g | %+.2f %% | %.1e |\n", f, k, courant, 100 * r.outflow_error,
                     r.pressure_error);
@@ -182,8 +188,10 @@ void sloshing_table() {
 void harmonic_table() {
   using enum ColumnEquations;
   std::printf(
-      "| Pi1 | Pi2 | h | two-layer: u-w | one-layer: its own | u-p | u-w | exact: u-p against u-w | its own "
-      "against u-w | change |\n|---|---|---|---|---|---|---|---|---|---|\n");
+      "| Pi1 | Pi2 | h | two-layer: u-w | two-layer-darcy: u-p | u-w | one-layer: its own | u-p | u-w | "
+      "exact: "
+      "u-p against u-w | its own against u-w | change "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   struct Run {
     double pi1, pi2;
     int cells, periods;
@@ -196,33 +204,38 @@ void harmonic_table() {
     const int steps = static_cast<int>(std::lround(std::max(400.0, 400 * run.cells / 20.0)));
     Choice c{.formulation = "two-layer", .cell = 1.0 / run.cells};
     const Harmonic two = harmonic_column(c, g, steps, run.periods);
+    c.formulation = "two-layer-darcy";
+    const Harmonic tied = harmonic_column(c, g, steps, run.periods);
     c.formulation = "one-layer";
     const Harmonic one = harmonic_column(c, g, steps, run.periods);
-    std::printf("| %g | %g | 1/%d | %.3f | %.3f | %.3f | %.3f | %.3f | %.3f | %.0e |\n", g.pi1, g.pi2,
-                run.cells, two.error(uw, g), one.error(darcy, g), one.error(up, g), one.error(uw, g),
-                harmonic_difference(up, uw, g), harmonic_difference(darcy, uw, g),
-                std::max(one.change, two.change));
+    std::printf("| %g | %g | 1/%d | %.3f | %.3f | %.3f | %.3f | %.3f | %.3f | %.3f | %.3f | %.0e |\n", g.pi1,
+                g.pi2, run.cells, two.error(uw, g), tied.error(up, g), tied.error(uw, g), one.error(darcy, g),
+                one.error(up, g), one.error(uw, g), harmonic_difference(up, uw, g),
+                harmonic_difference(darcy, uw, g), std::max({one.change, tied.change, two.change}));
     std::fflush(stdout);
   }
 }
 
 void waves_table() {
   std::printf(
-      "| formulation | h [m] | courant | pressure | effective stress | grains | water | speed | amplitude | "
-      "steps |\n|---|---|---|---|---|---|---|---|---|---|\n");
+      "| formulation | against | h [m] | courant | pressure | effective stress | grains | water | speed | "
+      "amplitude | steps |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
   struct Run {
     const char* formulation;
+    ColumnEquations equations;
     int cells;
     double courant;
   };
-  for (const Run& run : {Run{"two-layer", 40, 0.1}, Run{"two-layer", 80, 0.2}, Run{"two-layer", 80, 0.1},
-                         Run{"two-layer", 160, 0.1}, Run{"one-layer", 160, 0.1}}) {
-    const TwoWaves r =
-        two_waves({.formulation = run.formulation, .cell = 1.0 / run.cells, .courant = run.courant},
-                  ColumnEquations::uw);
-    std::printf("| %s | 1/%d | %g | %.3f | %.3f | %.3f | %.3f | %.3f | %.3f | %ld |\n", run.formulation,
-                run.cells, run.courant, r.pressure, r.stress, r.grains, r.water, r.speed, r.amplitude,
-                r.steps);
+  using enum ColumnEquations;
+  for (const Run& run : {Run{"two-layer", uw, 40, 0.1}, Run{"two-layer", uw, 80, 0.2},
+                         Run{"two-layer", uw, 80, 0.1}, Run{"two-layer", uw, 160, 0.1},
+                         Run{"two-layer-darcy", uw, 160, 0.1}, Run{"two-layer-darcy", up, 80, 0.1},
+                         Run{"two-layer-darcy", up, 160, 0.1}, Run{"one-layer", uw, 160, 0.1}}) {
+    const TwoWaves r = two_waves(
+        {.formulation = run.formulation, .cell = 1.0 / run.cells, .courant = run.courant}, run.equations);
+    std::printf("| %s | %s | 1/%d | %g | %.3f | %.3f | %.3f | %.3f | %.3f | %.3f | %ld |\n", run.formulation,
+                run.equations == uw ? "u-w" : "u-p", run.cells, run.courant, r.pressure, r.stress, r.grains,
+                r.water, r.speed, r.amplitude, r.steps);
     std::fflush(stdout);
   }
 }

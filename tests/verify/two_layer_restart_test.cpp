@@ -25,6 +25,8 @@ Scene affine(Scene s) {
 const std::pair<std::string, Scene> kScenes[] = {
     {"10 x 9 cells",
      open_sides_scene({.formulation = "two-layer", .courant = 0.5, .conductivity = 1e-2}, 0.5)},
+    {"10 x 9 cells, Darcy",
+     open_sides_scene({.formulation = "two-layer-darcy", .courant = 0.5, .conductivity = 1e-2}, 0.5)},
     {"30 x 27 cells, affine water",
      affine(open_sides_scene(
          {.formulation = "two-layer", .cell = 1.0 / 30, .courant = 0.5, .conductivity = 1e-2}, 0.15))}};
