@@ -139,6 +139,28 @@ POLDER_INLINE Pack exp(Pack x) {
 // ---- node registers
 // ------------------------------------------------------------------------------------------------
 
+namespace detail {
+// N / 2 doubles from memory in both halves of a register; one instruction.
+template <int N>
+POLDER_INLINE typename VectorTypes<N>::Real load_twice(const double* p) {
+  static_assert(N == 4 || N == 8);
+  using Half = typename VectorTypes<N / 2>::Real;
+#if defined(__AVX512F__)
+  if constexpr (N == 8)
+    return __builtin_ia32_broadcastf64x4_512(*reinterpret_cast<const Half*>(p), VectorTypes<8>::Real{}, -1);
+#endif
+#if defined(__AVX__)
+  if constexpr (N == 4) return __builtin_ia32_vbroadcastf128_pd256(reinterpret_cast<const Half*>(p));
+#endif
+}
+POLDER_INLINE VectorTypes<4>::Real lower_half(VectorTypes<8>::Real x) {
+  return __builtin_shufflevector(x, x, 0, 1, 2, 3);
+}
+POLDER_INLINE VectorTypes<2>::Real lower_half(VectorTypes<4>::Real x) {
+  return __builtin_shufflevector(x, x, 0, 1);
+}
+}  // namespace detail
+
 // N doubles of one node, held in as few machine registers as the vector level allows.
 template <int N>
 struct Reg {
@@ -156,12 +178,54 @@ struct Reg {
   POLDER_INLINE void store(double* p) const {
     for (int i = 0; i < kCount; ++i) reinterpret_cast<Chunk*>(p)[i] = r[i];
   }
+  // All lanes x; the lower half lo and the upper hi.
+  static POLDER_INLINE Reg all(double x) {
+    Reg a;
+    for (int i = 0; i < kCount; ++i) a.r[i] = x - Chunk{};
+    return a;
+  }
+  static POLDER_INLINE Reg halves(double lo, double hi) {
+    Reg a;
+    if constexpr (kCount == 1) {
+      typename detail::VectorTypes<kChunk>::Int upper;
+      for (int i = 0; i < N; ++i) upper[i] = i < N / 2 ? 0 : -1;
+      a.r[0] = upper ? hi - Chunk{} : lo - Chunk{};
+    } else {
+      for (int i = 0; i < kCount; ++i) a.r[i] = (i < kCount / 2 ? lo : hi) - Chunk{};
+    }
+    return a;
+  }
+  // N / 2 doubles, twice.
+  static POLDER_INLINE Reg twice(const double* p) {
+    Reg a;
+    if constexpr (kCount > 1) {
+      for (int i = 0; i < kCount; ++i)
+        a.r[i] = reinterpret_cast<const Chunk*>(p)[i < kCount / 2 ? i : i - kCount / 2];
+    } else {
+      a.r[0] = detail::load_twice<N>(p);
+    }
+    return a;
+  }
+  // The first M lanes, M at least a machine register's or half a register's.
+  template <int M>
+  POLDER_INLINE Reg<M> low() const {
+    Reg<M> a;
+    if constexpr (M >= kChunk)
+      for (int i = 0; i < M / kChunk; ++i) a.r[i] = r[i];
+    else
+      a.r[0] = detail::lower_half(r[0]);
+    return a;
+  }
   friend POLDER_INLINE Reg operator+(Reg a, const Reg& b) {
     for (int i = 0; i < kCount; ++i) a.r[i] += b.r[i];
     return a;
   }
   friend POLDER_INLINE Reg operator*(Reg a, double s) {
     for (int i = 0; i < kCount; ++i) a.r[i] *= s;
+    return a;
+  }
+  friend POLDER_INLINE Reg operator*(Reg a, const Reg& b) {
+    for (int i = 0; i < kCount; ++i) a.r[i] *= b.r[i];
     return a;
   }
   POLDER_INLINE Reg& operator+=(const Reg& b) { return *this = *this + b; }

@@ -42,7 +42,7 @@ MoveResult FluidLayer<D>::gather(double time, double dt) {
   o.affine = affine_;
   o.update_velocity = affine_ == AffineKind::none;
   o.flip = flip_;
-  const MoveResult r = update_stress_and_move(transfer_, o, &v_old_, v_new_, v_new_);
+  const MoveResult r = update_stress_and_move(transfer_, o, &v_old_, v_new_);
   require_calm(r, points_, time, dt);
   return r;
 }

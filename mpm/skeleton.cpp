@@ -202,7 +202,7 @@ MoveResult Skeleton<D>::deform(double time, double dt, const Reals& velocity) {
 template <int D>
 MoveResult Skeleton<D>::move(double time, const MoveOptions& o, const Reals* before, const Reals& v) {
   const double dt = o.dt;
-  MoveResult r = update_stress_and_move(transfer_, o, before, v, v);
+  MoveResult r = update_stress_and_move(transfer_, o, before, v);
   for (SurfaceLoad<D>& load : loads_) load.move(grid_, options_.shape, dt, v, sums_);
   mapped_ = false;
   travelled_ += r.largest_displacement;

@@ -56,8 +56,8 @@ void gather_expelled(Transfer<D>& transfer, double dt, const Reals& flow, bool c
 
 template <int D>
 MoveResult update_stress_and_move(Transfer<D>& transfer, const MoveOptions& options, const Reals* v_old,
-                                  const Reals& v_move, const Reals& v_gradient) {
-  return POLDER_SIMD_CALL(update_stress_and_move, transfer, options, v_old, v_move, v_gradient);
+                                  const Reals& v) {
+  return POLDER_SIMD_CALL(update_stress_and_move, transfer, options, v_old, v);
 }
 
 template <int D>
@@ -79,7 +79,7 @@ std::shared_ptr<const void> make_law_handle(int dimension, const MaterialParamet
   template void update_pore_velocities<D>(Transfer<D>&, double, double, const Reals&, const Reals&, Reals*); \
   template void gather_expelled<D>(Transfer<D>&, double, const Reals&, bool);                                \
   template MoveResult update_stress_and_move<D>(Transfer<D>&, const MoveOptions&, const Reals*,              \
-                                                const Reals&, const Reals&);                                 \
+                                                const Reals&);                                               \
   template void sum_tiles<D>(Transfer<D>&, int, Reals&);
 POLDER_INSTANTIATE(2)
 POLDER_INSTANTIATE(3)

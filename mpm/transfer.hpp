@@ -107,10 +107,10 @@ struct MoveResult {
   bool finite = true;
 };
 
-// Velocity gradient from v_gradient, stress by the law, position by v_move, volume and domain by the strain.
+// Position and velocity gradient from v, stress by the law, volume and domain by the strain.
 template <int D>
 MoveResult update_stress_and_move(Transfer<D>& transfer, const MoveOptions& options, const Reals* v_old,
-                                  const Reals& v_move, const Reals& v_gradient);
+                                  const Reals& v);
 
 // Sum of the private tiles at every node. width = kSum, kVector or kCellSum.
 template <int D>

@@ -19,6 +19,32 @@ struct BlockResult {
   bool finite = true;
 };
 
+constexpr double kRunaway = 1e12;  // squared speed beyond which a point counts as gone
+
+// The same while the packs of a body go by, lane by lane.
+struct Fastest {
+  Pack far = Pack{}, fast = Pack{};
+  Mask first = Mask{};  // of the pack with the lane's fastest point
+
+  POLDER_INLINE void look(int p, Pack square, Pack displacement) {
+    const Mask faster = (square > fast) | ~(square < kRunaway);  // not a number stays
+    fast = select(faster, square, fast);
+    first = faster ? Mask{} + p : first;
+    far = max(far, displacement);
+  }
+  void add_to(BlockResult& result, int body) const {
+    for (int l = 0; l < kLanes; ++l) {
+      const bool gone = !(fast[l] < kRunaway);
+      const int slot = static_cast<int>(first[l]) + l;
+      const bool earlier = fast[l] == result.fast && body == result.body && slot < result.slot;
+      if (gone) result.finite = false;
+      if (gone || fast[l] > result.fast || earlier)
+        result.fast = fast[l], result.body = body, result.slot = slot;
+      result.far = std::max(result.far, far[l]);
+    }
+  }
+};
+
 // Ratio of volumes over the step, det(I + G) (1 + hoop strain), minus one.
 template <int D>
 POLDER_INLINE Pack dilatation(const Pack* g, Pack hoop_strain) {
@@ -50,7 +76,7 @@ POLDER_INLINE void strain_of(const Pack* mid, Pack hoop_strain, Pack* strain) {
 template <int D>
 POLDER_INLINE void move_pack(ParticleSet<D>& set, int p, Mask real, const Pack* x, const Pack* half_size,
                              const Pack* carried, const Pack* gradient, bool stretches, double dt, double h,
-                             int body, BlockResult& result) {
+                             Fastest& fastest) {
   Pack fast = Pack{}, far = Pack{};
   for (int d = 0; d < D; ++d) {
     const Pack step = select(real, dt * carried[d], Pack{});
@@ -62,16 +88,7 @@ POLDER_INLINE void move_pack(ParticleSet<D>& set, int p, Mask real, const Pack* 
     far = max(far, abs(step) * (1 / h));
     fast += carried[d] * carried[d];
   }
-  fast = select(real, fast, Pack{});
-  if (all(fast <= broadcast(result.fast)) && all(far <= broadcast(result.far)))
-    return;  // nothing new: the rule
-  for (int lane = 0; lane < kLanes; ++lane) {
-    if (!real[lane]) continue;
-    if (!(fast[lane] < 1e12)) result.finite = false;
-    if (fast[lane] > result.fast || !(fast[lane] < 1e12))
-      result.fast = fast[lane], result.body = body, result.slot = p + lane;
-    result.far = std::max(result.far, far[lane]);
-  }
+  fastest.look(p, select(real, fast, Pack{}), far);
 }
 
 // What one block of one body needs in move_block.
@@ -80,8 +97,8 @@ struct MoveFrame {
   mpm::Transfer<D>& transfer;
   const MoveOptions& options;
   const BlockFrame<D>& block;
-  const double* velocities;  // tile of pairs
-  bool hoop, usl;
+  const double* velocities;  // tile of kFields vectors
+  bool hoop;
   double h;
 };
 
@@ -157,9 +174,9 @@ POLDER_INLINE void update_volume(ParticleSet<D>& set, int p, double bulk_modulus
 }
 
 // First half of a pack's step: velocities, displacement gradient, motion.
-template <int D, Want kWant>
+template <int D, int kFields, Want kWant>
 POLDER_INLINE void gather_motion(const MoveFrame<D>& m, ParticleSet<D>& set, int p, int body,
-                                 Motion<D>& motion, BlockResult& result) {
+                                 Motion<D>& motion, Fastest& fastest) {
   const MoveOptions& o = m.options;
   const double dt = o.dt;
   const Mask real = load(&set.mass[p]) > 0;
@@ -168,17 +185,15 @@ POLDER_INLINE void gather_motion(const MoveFrame<D>& m, ParticleSet<D>& set, int
   TileStencil<D> s;
   s.set(m.block, m.transfer.shape, x, l);
   Gathered<D> q;
-  gather_pack<D, kWant>(m.velocities, m.block, s, x, m.h, q);
+  gather_pack<D, kFields, kWant>(m.velocities, m.block, s, x, m.h, q);
 
   // Velocities: USL blends here; affine takes the grid's; MUSL has done it before the second mapping.
-  Pack carried[D];
   for (int d = 0; d < D; ++d) {
-    carried[d] = m.usl ? q.b[d] : q.a[d];
-    if (m.usl)
+    if constexpr (kFields == 2)
       store(&set.velocity[d][p],
-            o.flip * (load(&set.velocity[d][p]) + (q.b[d] - q.a[d])) + (1 - o.flip) * q.b[d]);
+            o.flip * (load(&set.velocity[d][p]) + (q.value[d] - q.before[d])) + (1 - o.flip) * q.value[d]);
     else if (o.affine != AffineKind::none)
-      store(&set.velocity[d][p], carried[d]);
+      store(&set.velocity[d][p], q.value[d]);
   }
   if (o.affine != AffineKind::none)
     for (int k = 0; k < D * D; ++k)
@@ -186,9 +201,9 @@ POLDER_INLINE void gather_motion(const MoveFrame<D>& m, ParticleSet<D>& set, int
 
   // Padding points feel nothing, so that their state stays harmless.
   for (int k = 0; k < D * D; ++k) motion.gradient[k] = select(real, dt * q.gradient[k], Pack{});
-  motion.hoop = m.hoop ? select(real, dt * q.b[0] / x[0], Pack{}) : Pack{};
-  move_pack<D>(set, p, real, x, l, carried, motion.gradient, m.transfer.bodies[body].law != nullptr, dt, m.h,
-               body, result);
+  motion.hoop = m.hoop ? select(real, dt * q.value[0] / x[0], Pack{}) : Pack{};
+  move_pack<D>(set, p, real, x, l, q.value, motion.gradient, m.transfer.bodies[body].law != nullptr, dt, m.h,
+               fastest);
 }
 
 // Second half: strain and rotated stress for the law. They refer to the midpoint of the step: a rigid
@@ -229,9 +244,9 @@ POLDER_INLINE void apply_law(const MoveFrame<D>& m, ParticleSet<D>& set, int bod
 
 // Without the locking cure, batch after batch; with it, all motions of the block first, then their cells'
 // means.
-template <int D, Want kWant>
+template <int D, int kFields, Want kWant>
 void move_body(const MoveFrame<D>& m, int block, int body, std::vector<Motion<D>>& motions,
-               BlockResult& result) {
+               Fastest& fastest) {
   ParticleSet<D>& set = *m.transfer.bodies[body].particles;
   const auto range = set.ranges[block];
   const int packs = range.count / kLanes;
@@ -240,7 +255,7 @@ void move_body(const MoveFrame<D>& m, int block, int body, std::vector<Motion<D>
     for (int u = 0; u < packs; u += kBatchPacks) {
       const int n = std::min(kBatchPacks, packs - u), first = range.first + u * kLanes;
       for (int i = 0; i < n; ++i)
-        gather_motion<D, kWant>(m, set, first + i * kLanes, body, motion[i], result);
+        gather_motion<D, kFields, kWant>(m, set, first + i * kLanes, body, motion[i], fastest);
       apply_law<D>(m, set, body, first, n, motion);
     }
     return;
@@ -249,7 +264,7 @@ void move_body(const MoveFrame<D>& m, int block, int body, std::vector<Motion<D>
   CellMeans<D> means;
   for (int u = 0; u < packs; ++u) {
     const int p = range.first + u * kLanes;
-    gather_motion<D, kWant>(m, set, p, body, motions[u], result);
+    gather_motion<D, kFields, kWant>(m, set, p, body, motions[u], fastest);
     means.add(&set.home_cell[p], &set.volume[p], motions[u].trace());
   }
   means.divide();
@@ -262,28 +277,22 @@ void move_body(const MoveFrame<D>& m, int block, int body, std::vector<Motion<D>
     apply_law<D>(m, set, body, range.first + u * kLanes, std::min(kBatchPacks, packs - u), &motions[u]);
 }
 
-template <int D, Want kWant>
-BlockResult move_block(mpm::Transfer<D>& t, const MoveOptions& o, const Reals* v_old, const Reals& v_move,
-                       const Reals& v_gradient, int block) {
-  constexpr int kTileNodes = mpm::Transfer<D>::kTileNodes;
-  alignas(64) double velocities[kTileNodes * kPair<D>];
-  const bool usl = o.update_velocity && kWant == Want::gradient;
-  load_pair<D>(*t.grid, block, usl ? *v_old : v_move, v_gradient, velocities);
-  const BlockFrame<D> frame(*t.grid, block);
-  const MoveFrame<D> m{t, o, frame, velocities, t.space == Space::axisymmetric, usl, t.grid->spacing()};
-  BlockResult result;
-  thread_local std::vector<Motion<D>> motions;
-  for (std::size_t body = 0; body < t.bodies.size(); ++body)
-    move_body<D, kWant>(m, block, static_cast<int>(body), motions, result);
-  return result;
-}
-
-template <int D, Want kWant>
-MoveResult move_of(mpm::Transfer<D>& t, const MoveOptions& o, const Reals* v_old, const Reals& v_move,
-                   const Reals& v_gradient) {
+// fields: v, or v_old and v.
+template <int D, int kFields, Want kWant>
+MoveResult move_of(mpm::Transfer<D>& t, const MoveOptions& o,
+                   const std::array<const double*, kFields>& fields) {
   std::vector<BlockResult> results(t.grid->occupied_blocks());
   parallel_for_work(work_of_blocks(t), [&](int block) {
-    results[block] = move_block<D, kWant>(t, o, v_old, v_move, v_gradient, block);
+    alignas(64) double velocities[mpm::Transfer<D>::kTileNodes * kVectorLanes<D> * kFields];
+    load_tile<D, kFields>(*t.grid, block, fields, velocities);
+    const BlockFrame<D> frame(*t.grid, block);
+    const MoveFrame<D> m{t, o, frame, velocities, t.space == Space::axisymmetric, t.grid->spacing()};
+    thread_local std::vector<Motion<D>> motions;
+    for (std::size_t body = 0; body < t.bodies.size(); ++body) {
+      Fastest fastest;
+      move_body<D, kFields, kWant>(m, block, static_cast<int>(body), motions, fastest);
+      fastest.add_to(results[block], static_cast<int>(body));
+    }
   });
   MoveResult total;
   for (const BlockResult& r : results) {
@@ -297,21 +306,19 @@ MoveResult move_of(mpm::Transfer<D>& t, const MoveOptions& o, const Reals* v_old
 }
 
 template <int D>
-MoveResult move_any(mpm::Transfer<D>& t, const MoveOptions& o, const Reals* v_old, const Reals& v_move,
-                    const Reals& v_gradient) {
-  if (o.affine == AffineKind::apic) return move_of<D, Want::moment>(t, o, v_old, v_move, v_gradient);
-  return move_of<D, Want::gradient>(t, o, v_old, v_move, v_gradient);
+MoveResult move_any(mpm::Transfer<D>& t, const MoveOptions& o, const Reals* v_old, const Reals& v) {
+  if (o.affine == AffineKind::apic) return move_of<D, 1, Want::moment>(t, o, {v.data()});
+  if (o.update_velocity) return move_of<D, 2, Want::gradient>(t, o, {v_old->data(), v.data()});
+  return move_of<D, 1, Want::gradient>(t, o, {v.data()});
 }
 
 }  // namespace
 
-MoveResult update_stress_and_move(mpm::Transfer<2>& t, const MoveOptions& o, const Reals* a, const Reals& b,
-                                  const Reals& c) {
-  return move_any(t, o, a, b, c);
+MoveResult update_stress_and_move(mpm::Transfer<2>& t, const MoveOptions& o, const Reals* a, const Reals& b) {
+  return move_any(t, o, a, b);
 }
-MoveResult update_stress_and_move(mpm::Transfer<3>& t, const MoveOptions& o, const Reals* a, const Reals& b,
-                                  const Reals& c) {
-  return move_any(t, o, a, b, c);
+MoveResult update_stress_and_move(mpm::Transfer<3>& t, const MoveOptions& o, const Reals* a, const Reals& b) {
+  return move_any(t, o, a, b);
 }
 
 }  // namespace polder::POLDER_SIMD_NAMESPACE

@@ -15,7 +15,7 @@
                       const Reals&, bool)                                                                   \
   POLDER_SIMD_DECLARE(void, gather_expelled, mpm::Transfer<D>&, double, const Reals&, bool)                 \
   POLDER_SIMD_DECLARE(mpm::MoveResult, update_stress_and_move, mpm::Transfer<D>&, const mpm::MoveOptions&,  \
-                      const Reals*, const Reals&, const Reals&)
+                      const Reals*, const Reals&)
 
 namespace polder {
 POLDER_DECLARE_KERNELS(2)

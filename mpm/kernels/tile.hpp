@@ -1,6 +1,7 @@
 // Helpers of the particle kernels: stencils in tile coordinates, tiles of node fields.
 #pragma once
 
+#include <array>
 #include <cstring>
 
 #include "core/simd.hpp"
@@ -46,36 +47,36 @@ struct TileStencil {
   }
 };
 
-// Copy a node field with kWidth numbers a node (of which `stride` are stored side by side in the tile at
-// `offset`) from the grid into a tile. Nodes that are not stored read as zero.
-template <int D, int kWidth, int kStride>
-void load_tile(const Grid<D>& grid, int block, const double* field, double* tile) {
+// Copies nodal velocities (mpm::Transfer::kVector numbers a node) into a tile, side by side where there are
+// two: {ax, ay, bx, by} or {ax, ay, az, -, bx, by, bz, -} a node. Nodes that are not stored read as zero.
+template <int D, int kFields>
+void load_tile(const Grid<D>& grid, int block, const std::array<const double*, kFields>& fields,
+               double* tile) {
   constexpr int kSide = Grid<D>::kSide, kTile = mpm::Transfer<D>::kTileSide;
+  constexpr int kIn = mpm::Transfer<D>::kVector, kLanesOut = D == 2 ? 2 : 4, kOut = kLanesOut * kFields;
+  using Node = Reg<kLanesOut>;
   const auto& neighbours = grid.neighbours(block);
-  for (int k = 0; k < Grid<D>::kNeighbours; ++k) {
-    const int n = neighbours[k];
-    const int shift[3] = {k % 3 - 1, k / 3 % 3 - 1, D == 3 ? k / 9 - 1 : 0};
-    int lo[3] = {0, 0, 0}, hi[3] = {1, 1, 1}, to[3] = {0, 0, 0};
-    for (int d = 0; d < D;
-         ++d) {  // part of the neighbour that the tile covers: nodes [-1, kSide + 3) of this block
-      lo[d] = shift[d] < 0 ? kSide - 1 : 0;
-      hi[d] = shift[d] > 0 ? 3 : kSide;
-      to[d] = shift[d] * kSide + 1;
+  // A row of the tile: the last node of the block before, this block's, three of the one behind.
+  const auto copy = [&](int neighbour, int first, int count, double* out) __attribute__((always_inline)) {
+    if (neighbour < 0) {
+      for (int x = 0; x < count * kFields; ++x) Node::zero().store(out + x * kLanesOut);
+      return;
     }
-    for (int z = lo[2]; z < hi[2]; ++z)
-      for (int y = lo[1]; y < hi[1]; ++y) {
-        double* out =
-            tile + (((D == 3 ? (z + to[2]) * kTile : 0) + y + to[1]) * kTile + lo[0] + to[0]) * kStride;
-        const double* in = field + (static_cast<std::size_t>(n < 0 ? 0 : n) * Grid<D>::kCells +
-                                    ((D == 3 ? z * kSide : 0) + y) * kSide + lo[0]) *
-                                       kWidth;
-        using Node = Reg<(kWidth < kStride ? kWidth : kStride)>;
-        if (n < 0)
-          for (int x = 0; x < hi[0] - lo[0]; ++x) Node::zero().store(out + x * kStride);
-        else
-          for (int x = 0; x < hi[0] - lo[0]; ++x) Node::load(in + x * kWidth).store(out + x * kStride);
-      }
-  }
+    const std::size_t in = (static_cast<std::size_t>(neighbour) * Grid<D>::kCells + first) * kIn;
+    for (int x = 0; x < count; ++x)
+      for (int f = 0; f < kFields; ++f)
+        Node::load(fields[f] + in + x * kIn).store(out + x * kOut + f * kLanesOut);
+  };
+  for (int z = D == 3 ? -1 : 0; z < (D == 3 ? kSide + 3 : 1); ++z)
+    for (int y = -1; y < kSide + 3; ++y) {
+      const int by = y < 0 ? 0 : y < kSide ? 1 : 2, bz = z < 0 ? 0 : z < kSide ? 1 : 2;
+      const int* of_row = &neighbours[(D == 3 ? bz * 9 : 0) + by * 3];
+      const int first = ((D == 3 ? (z + kSide) % kSide * kSide : 0) + (y + kSide) % kSide) * kSide;
+      double* out = tile + ((D == 3 ? (z + 1) * kTile : 0) + y + 1) * kTile * kOut;
+      copy(of_row[0], first + kSide - 1, 1, out);
+      copy(of_row[1], first, kSide, out + kOut);
+      copy(of_row[2], first, 3, out + (kSide + 1) * kOut);
+    }
 }
 
 // Work of the occupied blocks for parallel_for_work: particles, and what a tile costs in particles.

@@ -38,8 +38,8 @@ void update_velocities_of(mpm::Transfer<D>& t, const Phase& phase, double flip, 
   constexpr int kTileNodes = mpm::Transfer<D>::kTileNodes, kTile = mpm::Transfer<D>::kTileSide;
   const Grid<D>& grid = *t.grid;
   parallel_for_work(work_of_blocks(t), [&](int block) {
-    alignas(64) double in[kTileNodes * kPair<D>];
-    load_pair<D>(grid, block, v_old, v_new, in);
+    alignas(64) double in[kTileNodes * 2 * kVectorLanes<D>];
+    load_tile<D, 2>(grid, block, {v_old.data(), v_new.data()}, in);
     double* out = t.tiles.data() + static_cast<std::size_t>(block) * kTileNodes * 4;
     if (map) std::memset(out, 0, sizeof(double) * kTileNodes * 4);
     const BlockFrame<D> frame(grid, block);
@@ -54,10 +54,10 @@ void update_velocities_of(mpm::Transfer<D>& t, const Phase& phase, double flip, 
         TileStencil<D> s;
         s.set(frame, t.shape, x, l);
         Gathered<D> q;
-        gather_pack<D, Want::values>(in, frame, s, x, grid.spacing(), q);
+        gather_pack<D, 2, Want::values>(in, frame, s, x, grid.spacing(), q);
         Pack v[D];
         for (int d = 0; d < D; ++d) {
-          v[d] = flip * (load(&velocity[d][p]) + (q.b[d] - q.a[d])) + (1 - flip) * q.b[d];
+          v[d] = flip * (load(&velocity[d][p]) + (q.value[d] - q.before[d])) + (1 - flip) * q.value[d];
           store(&velocity[d][p], v[d]);
         }
         if (!map) continue;
@@ -94,8 +94,8 @@ struct CellSums {
 // cell.
 template <int D>
 void gather_expelled_block(mpm::Transfer<D>& t, double dt, const Reals& flow, bool mean, int block) {
-  alignas(64) double in[mpm::Transfer<D>::kTileNodes * kPair<D>];
-  load_pair<D>(*t.grid, block, flow, flow, in);
+  alignas(64) double in[mpm::Transfer<D>::kTileNodes * kVectorLanes<D>];
+  load_tile<D, 1>(*t.grid, block, {flow.data()}, in);
   const BlockFrame<D> frame(*t.grid, block);
   const bool radial = t.space == Space::axisymmetric;
   for (const mpm::Body<D>& body : t.bodies) {
@@ -109,10 +109,10 @@ void gather_expelled_block(mpm::Transfer<D>& t, double dt, const Reals& flow, bo
       TileStencil<D> s;
       s.set(frame, t.shape, x, l);
       Gathered<D> q;
-      gather_pack<D, Want::gradient>(in, frame, s, x, t.grid->spacing(), q);
+      gather_pack<D, 1, Want::gradient>(in, frame, s, x, t.grid->spacing(), q);
       Pack divergence = q.gradient[0];
       for (int d = 1; d < D; ++d) divergence += q.gradient[d * D + d];
-      if (radial) divergence += q.b[0] / x[0];
+      if (radial) divergence += q.value[0] / x[0];
       const Pack expelled = dt * load(&set.wet[p]) * divergence;
       store(&set.expelled[p], expelled);
       if (!mean) continue;
