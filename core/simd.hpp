@@ -206,6 +206,21 @@ struct Reg {
     }
     return a;
   }
+  // The lanes named, in that order; -1 gives zero.
+  template <int... kFrom>
+  POLDER_INLINE Reg pick() const {
+    static_assert(sizeof...(kFrom) == N);
+    Reg a;
+    if constexpr (kCount == 1) {
+      a.r[0] = __builtin_shufflevector(r[0], Chunk{}, (kFrom < 0 ? N : kFrom)...);
+    } else {
+      constexpr int from[] = {kFrom...};
+      for (int i = 0; i < N; ++i)
+        a.r[i / kChunk][i % kChunk] =
+            from[i] < 0 ? 0.0 : r[(from[i] & (N - 1)) / kChunk][from[i] & (kChunk - 1)];
+    }
+    return a;
+  }
   // The first M lanes, M at least a machine register's or half a register's.
   template <int M>
   POLDER_INLINE Reg<M> low() const {

@@ -1,11 +1,10 @@
 // Particles to nodes and cells.
 //
 // With the stencil's weights N_i = w0 w1 (w2), node i gets
-//   m_i += N m            p_i += N m (v + C (x_i - x_p))            f_i += N f_ext - V sigma grad N V_i += N
-//   V
-// The tensor product is summed axis by axis: what multiplies a plain weight and what multiplies a slope along
-// the last axis are carried in two registers, so a node costs two or three fused multiply-adds of a whole
-// register.
+//   m_i += N m,   p_i += N m (v + C (x_i - x_p)),   f_i += N f_ext - V sigma grad N,   V_i += N V.
+// The tensor product is summed axis by axis. What multiplies a slope (or, of C, a distance) along one axis
+// and plain weights along the others is one register for that axis and its node; the last axis takes what
+// multiplies plain weights along. So a node costs two fused multiply-adds of a whole register.
 #include <algorithm>
 
 #include "core/threads.hpp"
@@ -16,13 +15,47 @@ namespace {
 
 using mpm::AffineKind;
 
-// Fields of one pack that go to the nodes, transposed: one register for each particle.
+// What one pack gives to the nodes: one register for each particle.
 template <int D, bool kAffine>
 struct ScatterFields {
   Reg<8> value[kLanes];                    // m, m v, f_ext, V
   Reg<8> stress[D][kLanes];                // -V sigma e_d in the force lanes
   Reg<8> affine[kAffine ? D : 1][kLanes];  // m C e_d in the momentum lanes
 };
+
+// plain: what goes with weights alone. stress: -V sigma, in the order of particle stress. The transposes are
+// shared: stress rides in lanes that mass, momentum and volume leave free.
+template <int D, bool kAffine>
+POLDER_INLINE void transpose_fields(Pack (&plain)[8], bool has_force, const Pack* stress,
+                                    ScatterFields<D, kAffine>& out) {
+  Reg<8> shared[kLanes], other[D == 3 ? kLanes : 1], force[kLanes];
+  if (has_force) {
+    Pack f[8] = {};
+    for (int d = 0; d < D; ++d) f[1 + D + d] = plain[1 + D + d];
+    to_nodes<8>(f, force);
+  }
+  if constexpr (D == 2) {
+    plain[3] = stress[0], plain[4] = plain[6] = stress[3], plain[7] = stress[1];
+  } else {
+    plain[4] = stress[0], plain[5] = stress[3], plain[6] = stress[5];
+    Pack f[8] = {stress[3], stress[1], stress[4], Pack{}, stress[5], stress[4], stress[2], Pack{}};
+    to_nodes<8>(f, other);
+  }
+  to_nodes<8>(plain, shared);
+  for (int l = 0; l < kLanes; ++l) {
+    if constexpr (D == 2) {
+      out.value[l] = shared[l].template pick<0, 1, 2, -1, -1, 5, -1, -1>();
+      out.stress[0][l] = shared[l].template pick<-1, -1, -1, 3, 4, -1, -1, -1>();
+      out.stress[1][l] = shared[l].template pick<-1, -1, -1, 6, 7, -1, -1, -1>();
+    } else {
+      out.value[l] = shared[l].template pick<0, 1, 2, 3, -1, -1, -1, 7>();
+      out.stress[0][l] = shared[l].template pick<-1, -1, -1, -1, 4, 5, 6, -1>();
+      out.stress[1][l] = other[l].template pick<-1, -1, -1, -1, 0, 1, 2, -1>();
+      out.stress[2][l] = other[l].template pick<-1, -1, -1, -1, 4, 5, 6, -1>();
+    }
+    if (has_force) out.value[l] += force[l];
+  }
+}
 
 template <int D, bool kAffine>
 POLDER_INLINE void load_fields(const mpm::Transfer<D>& transfer, const ParticleSet<D>& set, int p,
@@ -54,15 +87,10 @@ POLDER_INLINE void load_fields(const mpm::Transfer<D>& transfer, const ParticleS
     f[mpm::Transfer<D>::kVolume] = volume * load(&set.nodal_weight[p]);
   else if (!set.wet.empty())
     f[mpm::Transfer<D>::kVolume] = volume * load(&set.wet[p]);
-  to_nodes<8>(f, out.value);
-
-  constexpr int xy = 3, yz = D == 3 ? 4 : 0, zx = D == 3 ? 5 : 0;
-  const int row[3][3] = {{0, xy, zx}, {xy, 1, yz}, {zx, yz, 2}};
-  for (int d = 0; d < D; ++d) {
-    Pack s[8] = {};
-    for (int i = 0; i < D; ++i) s[kForce + i] = -volume * sigma[row[d][i]];
-    to_nodes<8>(s, out.stress[d]);
-  }
+  Pack push[ParticleSet<D>::kStress];
+  for (int k = 0; k < ParticleSet<D>::kStress; ++k) push[k] = -volume * sigma[k];
+  const bool has_force = !set.body_acceleration[0].empty() || transfer.space == Space::axisymmetric;
+  transpose_fields<D, kAffine>(f, has_force, push, out);
   if constexpr (kAffine)
     for (int d = 0; d < D; ++d) {
       Pack c[8] = {};
@@ -91,58 +119,77 @@ POLDER_INLINE void load_pore_water(const mpm::Transfer<D>& transfer, double dens
     conductivity *= (1.0 - grains) * (1.0 - grains) * (1.0 - grains) / (grains * grains);
   }
   f[mpm::Transfer<D>::kVolume] = select(conductivity > 0, volume / conductivity, Pack{});
-  to_nodes<8>(f, out.value);
-  for (int d = 0; d < D; ++d) {
-    Pack s[8] = {};
-    s[kForce + d] = push;
-    to_nodes<8>(s, out.stress[d]);
-  }
+  Pack stress[ParticleSet<D>::kStress] = {push, push, push};
+  transpose_fields<D, false>(f, D == 2 && transfer.space == Space::axisymmetric, stress, out);
 }
 
-POLDER_INLINE void add(double* node, const Reg<8>& value) {
-  (Reg<8>::load(node) + value).store(node);
-}
+// Weights of a pack by axis and node of the stencil, for lanes to be taken out one by one.
+template <int D, bool kAffine>
+struct LaneWeights {
+  alignas(64) double plain[D][3][kLanes];
+  alignas(64) double slope[D][3][kLanes];                 // dN/dx [1/m]
+  alignas(64) double offset[kAffine ? D : 1][3][kLanes];  // N (x_node - x_p) [m]
+  alignas(64) double product[D == 3 ? 9 : 1][kLanes];     // w1 w2 of node (j, k)
+
+  POLDER_INLINE LaneWeights(const BlockFrame<D>& frame, const TileStencil<D>& s, const Pack* position,
+                            double h) {
+    for (int d = 0; d < D; ++d)
+      for (int a = 0; a < 3; ++a) {
+        store(plain[d][a], s.axis[d].weight[a]);
+        store(slope[d][a], s.axis[d].slope[a] * frame.inverse_h);
+        if constexpr (kAffine)
+          store(offset[d][a], s.axis[d].weight[a] * s.distance(frame, d, a, position[d], h));
+      }
+    if constexpr (D == 3)
+      for (int k = 0; k < 3; ++k)
+        for (int j = 0; j < 3; ++j) store(product[k * 3 + j], s.axis[1].weight[j] * s.axis[2].weight[k]);
+  }
+};
 
 template <int D, bool kAffine>
-POLDER_INLINE void scatter_pack(const TileStencil<D>& s, const double (&w)[D][3][kLanes],
-                                const double (&g)[D][3][kLanes], const double (&r)[D][3][kLanes],
+POLDER_INLINE void scatter_pack(const TileStencil<D>& s, const LaneWeights<D, kAffine>& weights,
                                 const ScatterFields<D, kAffine>& f, double* tile) {
   constexpr int kTile = mpm::Transfer<D>::kTileSide;
+  const auto& w = weights.plain;
+  const auto& g = weights.slope;
+  const auto& r = weights.offset;
+#pragma GCC unroll 1
   for (int l = 0; l < kLanes; ++l) {
     double* first = tile + s.start[l] * 8;
-    if constexpr (D == 2) {
-      Reg<8> plain[3], slope[3], offset[3];
+    // What belongs to node a along an axis and not to the last one.
+    const auto across = [&](int d, int a) __attribute__((always_inline)) {
+      Reg<8> sum = f.stress[d][l] * g[d][a][l];
+      if constexpr (kAffine) sum += f.affine[d][l] * r[d][a][l];
+      return sum;
+    };
+    const auto last_axis = [&](int a) __attribute__((always_inline)) {
+      Reg<8> sum = f.value[l] * w[D - 1][a][l];
+      sum += f.stress[D - 1][l] * g[D - 1][a][l];
+      if constexpr (kAffine) sum += f.affine[D - 1][l] * r[D - 1][a][l];
+      return sum;
+    };
+    const auto add_row = [&](double* to, const Reg<8>& plain, const Reg<8>(&x)[3], double others)
+        __attribute__((always_inline)) {
       for (int i = 0; i < 3; ++i) {
-        plain[i] = f.value[l] * w[0][i][l] + f.stress[0][l] * g[0][i][l];
-        slope[i] = f.stress[1][l] * w[0][i][l];
-        if constexpr (kAffine) {
-          plain[i] += f.affine[0][l] * r[0][i][l];
-          offset[i] = f.affine[1][l] * w[0][i][l];
+        Reg<8> node = Reg<8>::load(to + i * 8);
+        node += plain * w[0][i][l];
+        node += x[i] * others;
+        node.store(to + i * 8);
+      }
+    };
+    const Reg<8> x[3] = {across(0, 0), across(0, 1), across(0, 2)};
+    if constexpr (D == 2) {
+      for (int j = 0; j < 3; ++j) add_row(first + j * kTile * 8, last_axis(j), x, w[1][j][l]);
+    } else {
+      const Reg<8> y[3] = {across(1, 0), across(1, 1), across(1, 2)};
+      for (int k = 0; k < 3; ++k) {
+        const Reg<8> z = last_axis(k);
+        for (int j = 0; j < 3; ++j) {
+          Reg<8> plain = z * w[1][j][l];
+          plain += y[j] * w[2][k][l];
+          add_row(first + (k * kTile + j) * kTile * 8, plain, x, weights.product[k * 3 + j][l]);
         }
       }
-      for (int j = 0; j < 3; ++j)
-        for (int i = 0; i < 3; ++i) {
-          Reg<8> n = plain[i] * w[1][j][l] + slope[i] * g[1][j][l];
-          if constexpr (kAffine) n += offset[i] * r[1][j][l];
-          add(first + (j * kTile + i) * 8, n);
-        }
-    } else {
-      for (int j = 0; j < 3; ++j)
-        for (int i = 0; i < 3; ++i) {
-          const double ww = w[0][i][l] * w[1][j][l];
-          Reg<8> plain = f.value[l] * ww + f.stress[0][l] * (g[0][i][l] * w[1][j][l]) +
-                         f.stress[1][l] * (w[0][i][l] * g[1][j][l]);
-          Reg<8> slope = f.stress[2][l] * ww, offset{};
-          if constexpr (kAffine) {
-            plain += f.affine[0][l] * (r[0][i][l] * w[1][j][l]) + f.affine[1][l] * (w[0][i][l] * r[1][j][l]);
-            offset = f.affine[2][l] * ww;
-          }
-          for (int k = 0; k < 3; ++k) {
-            Reg<8> n = plain * w[2][k][l] + slope * g[2][k][l];
-            if constexpr (kAffine) n += offset * r[2][k][l];
-            add(first + ((k * kTile + j) * kTile + i) * 8, n);
-          }
-        }
     }
   }
 }
@@ -166,16 +213,10 @@ void scatter_blocks(mpm::Transfer<D>& transfer, const Load& load_of, const Has& 
         for (int d = 0; d < D; ++d) x[d] = load(&set.position[d][p]), l[d] = load(&set.half_size[d][p]);
         TileStencil<D> s;
         s.set(frame, transfer.shape, x, l);
-        alignas(64) double w[D][3][kLanes], g[D][3][kLanes], r[D][3][kLanes];
-        for (int d = 0; d < D; ++d)
-          for (int a = 0; a < 3; ++a) {
-            store(w[d][a], s.axis[d].weight[a]);
-            store(g[d][a], s.axis[d].slope[a] * frame.inverse_h);
-            if constexpr (kAffine) store(r[d][a], s.axis[d].weight[a] * s.distance(frame, d, a, x[d], h));
-          }
+        const LaneWeights<D, kAffine> weights(frame, s, x, h);
         ScatterFields<D, kAffine> f;
         load_of(set, p, f);
-        scatter_pack<D, kAffine>(s, w, g, r, f, tile);
+        scatter_pack<D, kAffine>(s, weights, f, tile);
       }
     }
   });
