@@ -239,6 +239,10 @@ struct Reg {
     for (int i = 0; i < kCount; ++i) a.r[i] *= s;
     return a;
   }
+  friend POLDER_INLINE Reg operator/(Reg a, double s) {
+    for (int i = 0; i < kCount; ++i) a.r[i] /= s;
+    return a;
+  }
   friend POLDER_INLINE Reg operator*(Reg a, const Reg& b) {
     for (int i = 0; i < kCount; ++i) a.r[i] *= b.r[i];
     return a;

@@ -60,9 +60,9 @@ void scatter_water(World<D>& world) {
   follow_grid(world);
   const bool mixed = world.scene.numerics.point_pressure == PointPressure::mixed;
   if (mixed) set_full_cells_aside(world);
-  mpm::scatter_pore_water(w.transfer, world.scene.water.density, world.scene.kozeny_carman(), w.sums);
+  mpm::scatter_pore_water(w.transfer, world.scene.water.density, world.scene.kozeny_carman(), w.sums,
+                          w.velocity_old);
   if (mixed) add_force_of_full_cells(world);
-  mpm::velocities_of(w.transfer, w.sums, w.velocity_old);
   push_at_sides(world);
 }
 
@@ -166,14 +166,9 @@ template <int D>
 const Reals& water_strain_velocity(World<D>& world, const StepInput& in) {
   PointWater<D>& w = *world.pore_water->points;
   const mpm::SkeletonOptions& options = world.skeleton.options();
-  Reals* momentum = options.musl ? &w.mapped : nullptr;
   mpm::update_pore_velocities(w.transfer, world.scene.water.density, options.flip, w.velocity_old, w.velocity,
-                              momentum);
+                              w.sums, options.musl ? &w.mapped : nullptr);
   if (!options.musl) return w.velocity;
-  parallel_for(world.skeleton.grid().slots(), [&](int i) {
-    const double mass = w.sums[static_cast<std::size_t>(i) * 8], inverse = mass > 0 ? 1 / mass : 0;
-    for (int d = 0; d < D; ++d) w.mapped[static_cast<std::size_t>(i) * kStride + d] *= inverse;
-  });
   w.walls.apply(in.time + in.dt, in.dt, w.sums, w.mapped, false, false);
   return w.mapped;
 }

@@ -26,8 +26,7 @@ void FluidLayer<D>::follow_grid() {
 
 template <int D>
 void FluidLayer<D>::scatter() {
-  scatter_state(transfer_, affine_, sums_);
-  velocities_of(transfer_, sums_, v_old_);
+  scatter_state(transfer_, affine_, sums_, v_old_);
 }
 
 template <int D>

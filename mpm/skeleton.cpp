@@ -6,6 +6,7 @@
 
 #include "core/error.hpp"
 #include "core/threads.hpp"
+#include "mpm/node_update.hpp"
 #include "mpm/runaway.hpp"
 
 namespace polder::mpm {
@@ -80,7 +81,7 @@ void Skeleton<D>::restore(double travelled, double mass_floor, const std::vector
 
 template <int D>
 void Skeleton<D>::scatter(double time) {
-  scatter_state(transfer_, options_.affine, sums_);
+  scatter_state(transfer_, options_.affine, sums_, v_old_);
   applied_load_ = Point<D>{};
   for (const SurfaceLoad<D>& load : loads_) {
     const Point<D> f = load.apply(grid_, options_.shape, time, sums_);
@@ -93,36 +94,15 @@ void Skeleton<D>::scatter(double time) {
         if (body->mass[p] > 0) density = std::min(density, body->mass[p] / body->volume[p]);
     mass_floor_ = kMassFloor * density * std::pow(grid_.spacing(), D);
   }
-  velocities_of(transfer_, sums_, v_old_);
 }
 
 template <int D>
 void Skeleton<D>::predict(double dt, const Point<D>& gravity, double damping, const Reals* acceleration) {
-  std::vector<double> loads(grid_.blocks(), 0.0);
-  const std::vector<std::uint8_t>& held = boundaries_.held_components();
-  parallel_for(grid_.blocks(), [&](int block) {
-    for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
-      const double* s = &sums_[static_cast<std::size_t>(i) * kSum];
-      const double* v = &v_old_[static_cast<std::size_t>(i) * kVector];
-      double* u = &v_trial_[static_cast<std::size_t>(i) * kVector];
-      if (!(s[0] > mass_floor_)) {
-        for (int d = 0; d < D; ++d) u[d] = v[d];
-        continue;
-      }
-      for (int d = 0; d < D; ++d) {
-        double a = s[kForce + d] / s[0] + gravity[d];
-        if (acceleration != nullptr) a += (*acceleration)[static_cast<std::size_t>(i) * kVector + d];
-        loads[block] += s[0] * s[0] * gravity[d] * gravity[d];
-        // Damping of a held component would only falsify its reaction.
-        if (damping > 0 && !(held[i] >> d & 1))
-          a *= a * v[d] > 0 ? 1 - damping : a * v[d] < 0 ? 1 + damping : 1.0;
-        u[d] = v[d] + dt * a;
-      }
-    }
-  });
+  const NodePrediction<D> p{dt, gravity, damping, mass_floor_, acceleration, &boundaries_.held_components()};
+  const double squared_mass = predict_velocities(grid_, p, sums_, v_old_, v_trial_);
   double load = 0;
-  for (double l : loads) load += l;
-  for (int d = 0; d < D; ++d) load += applied_load_[d] * applied_load_[d];
+  for (int d = 0; d < D; ++d)
+    load += squared_mass * gravity[d] * gravity[d] + applied_load_[d] * applied_load_[d];
   load_norm_ = std::sqrt(load);
 }
 
@@ -130,29 +110,12 @@ template <int D>
 void Skeleton<D>::constrain(double time, double dt) {
   std::swap(v_new_, v_trial_);  // the next prediction writes every component anew
   boundaries_.apply(time, dt, sums_, v_new_, true, true);
-  std::vector<double> squares(grid_.blocks(), 0.0);
-  parallel_for(grid_.blocks(), [&](int block) {
-    for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i)
-      for (int d = 0; d < D; ++d) {
-        const std::size_t j = static_cast<std::size_t>(i) * kVector + d;
-        const double impulse = sums_[static_cast<std::size_t>(i) * kSum] * (v_new_[j] - v_old_[j]);
-        squares[block] += impulse * impulse;
-      }
-  });
-  double square = 0;
-  for (double x : squares) square += x;
-  unbalanced_ = std::sqrt(square) / dt;
+  unbalanced_ = std::sqrt(squared_impulse(grid_, sums_, v_old_, v_new_)) / dt;
 }
 
 template <int D>
 void Skeleton<D>::remap(double flip, const Reals& from, const Reals& to, double time, double dt) {
-  update_velocities(transfer_, flip, from, to, &v_map_);
-  parallel_for(grid_.blocks(), [&](int block) {
-    for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
-      const double mass = sums_[static_cast<std::size_t>(i) * kSum], inverse = mass > 0 ? 1 / mass : 0;
-      for (int d = 0; d < D; ++d) v_map_[static_cast<std::size_t>(i) * kVector + d] *= inverse;
-    }
-  });
+  update_velocities(transfer_, flip, from, to, sums_, v_map_);
   boundaries_.apply(time, dt, sums_, v_map_, false, false);
   mapped_ = true;
 }

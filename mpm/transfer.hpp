@@ -54,37 +54,35 @@ struct Transfer {
   void resize() { tiles.resize(static_cast<std::size_t>(grid->occupied_blocks()) * kTileNodes * kSum); }
 };
 
-// Particles to nodes: mass, momentum, internal force and loads, volume into sums [slots * kSum].
+// Particles to nodes: mass, momentum, internal force and loads, volume into sums [slots * kSum]; velocities
+// of the nodes from their mass and momentum, zero where there is none [slots * kVector].
 template <int D>
-void scatter_state(Transfer<D>& transfer, AffineKind affine, Reals& sums);
-
-// Velocities of the nodes from their mass and momentum, zero where there is none [slots * kVector].
-template <int D>
-void velocities_of(const Transfer<D>& transfer, const Reals& sums, Reals& velocity);
+void scatter_state(Transfer<D>& transfer, AffineKind affine, Reals& sums, Reals& velocity);
 
 // Particles to cells by the overlap of their domains: {V of wet soil, V of its solid, conductivity * V, mass
 // of the water in all soil} into cells [slots * kCellSum].
 template <int D>
 void scatter_cells(Transfer<D>& transfer, Reals& cells);
 
-// Particle velocities from nodal ones and, if momentum is not null, their momentum mapped back (MUSL):
-//   v_p = flip (v_p + sum N (v_new - v_old)) + (1 - flip) sum N v_new
-// momentum [slots * kVector].
+// Particle velocities from nodal ones,
+//   v_p = flip (v_p + sum N (v_new - v_old)) + (1 - flip) sum N v_new,
+// and the velocities of the nodes that their momenta give, with the mass in `sums` (MUSL).
 template <int D>
 void update_velocities(Transfer<D>& transfer, double flip, const Reals& v_old, const Reals& v_new,
-                       Reals* momentum);
+                       const Reals& sums, Reals& mapped);
 
 // Water in the pores of points that carry its pressure (and, with its full inertia, its velocity w) to nodes
 // [slots * kSum], in the lanes of scatter_state(): mass of the water, momentum, force sum V p grad N of the
 // pore pressure on soil and water together, volume of soil over conductivity [m2 s]. density: of water.
-// kozeny_carman: conductivity is the points' times n^3 / (1 - n)^2.
+// kozeny_carman: conductivity is the points' times n^3 / (1 - n)^2. velocity: as there.
 template <int D>
-void scatter_pore_water(Transfer<D>& transfer, double density, bool kozeny_carman, Reals& sums);
+void scatter_pore_water(Transfer<D>& transfer, double density, bool kozeny_carman, Reals& sums,
+                        Reals& velocity);
 
-// update_velocities() for that water.
+// update_velocities() for that water; mapped may be null.
 template <int D>
 void update_pore_velocities(Transfer<D>& transfer, double density, double flip, const Reals& w_old,
-                            const Reals& w_new, Reals* momentum);
+                            const Reals& w_new, const Reals& sums, Reals* mapped);
 
 // Of the flow of water relative to the grains at the nodes, q [slots * kVector], dt div q at the points into
 // ParticleSet::expelled; cell_average: as the volumetric strain in MoveOptions.
@@ -111,10 +109,6 @@ struct MoveResult {
 template <int D>
 MoveResult update_stress_and_move(Transfer<D>& transfer, const MoveOptions& options, const Reals* v_old,
                                   const Reals& v);
-
-// Sum of the private tiles at every node. width = kSum, kVector or kCellSum.
-template <int D>
-void sum_tiles(Transfer<D>& transfer, int width, Reals& out);
 
 // A law of the running vector level; keep the handle as long as kernels use it.
 std::shared_ptr<const void> make_law_handle(int dimension, const MaterialParameters& material, bool plastic);
