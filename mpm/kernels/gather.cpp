@@ -180,6 +180,7 @@ POLDER_INLINE void gather_motion(const MoveFrame<D>& m, ParticleSet<D>& set, int
   const MoveOptions& o = m.options;
   const double dt = o.dt;
   const Mask real = load(&set.mass[p]) > 0;
+  fetch_ahead(p, set.position, set.half_size, set.velocity, set.mass, set.volume, set.stress, set.state);
   Pack x[D], l[D];
   for (int d = 0; d < D; ++d) x[d] = load(&set.position[d][p]), l[d] = load(&set.half_size[d][p]);
   TileStencil<D> s;

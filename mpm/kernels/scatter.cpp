@@ -209,6 +209,8 @@ void scatter_blocks(mpm::Transfer<D>& transfer, const Load& load_of, const Has& 
       if (!has(set)) continue;
       const auto range = set.ranges[block];
       for (int p = range.first; p < range.first + range.count; p += kLanes) {
+        fetch_ahead(p, set.position, set.half_size, set.velocity, set.mass, set.volume, set.stress, set.wet,
+                    set.affine);
         Pack x[D], l[D];
         for (int d = 0; d < D; ++d) x[d] = load(&set.position[d][p]), l[d] = load(&set.half_size[d][p]);
         TileStencil<D> s;

@@ -47,6 +47,22 @@ struct TileStencil {
   }
 };
 
+// Fields of particles are many streams, more than processors foresee: what comes kAhead packs later is asked
+// for by hand, a cache line a field.
+inline constexpr int kAhead = 8;
+
+POLDER_INLINE void fetch_ahead(int p, const Reals& field) {
+  if (!field.empty()) __builtin_prefetch(field.data() + p + kAhead * kLanes);
+}
+template <class Fields>
+POLDER_INLINE void fetch_ahead(int p, const Fields& fields) {
+  for (const Reals& field : fields) fetch_ahead(p, field);
+}
+template <class... Fields>
+POLDER_INLINE void fetch_ahead(int p, const Fields&... fields) {
+  (fetch_ahead(p, fields), ...);
+}
+
 // Copies nodal velocities (mpm::Transfer::kVector numbers a node) into a tile, side by side where there are
 // two: {ax, ay, bx, by} or {ax, ay, az, -, bx, by, bz, -} a node. Nodes that are not stored read as zero.
 template <int D, int kFields>

@@ -49,6 +49,7 @@ void update_velocities_of(mpm::Transfer<D>& t, const Phase& phase, double flip, 
       std::array<Reals, D>& velocity = Phase::velocity(set);
       const auto range = set.ranges[block];
       for (int p = range.first; p < range.first + range.count; p += kLanes) {
+        fetch_ahead(p, set.position, set.half_size, velocity, set.mass);
         Pack x[D], l[D];
         for (int d = 0; d < D; ++d) x[d] = load(&set.position[d][p]), l[d] = load(&set.half_size[d][p]);
         TileStencil<D> s;
