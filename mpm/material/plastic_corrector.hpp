@@ -10,9 +10,11 @@
 // are visited in ascending order first; between knots (and for an exponential, whose k is concave) there is
 // one root with k(0) > 0.
 //
-// Bracketed secant iteration; a lane freezes when it has converged, so its bits do not depend on its
-// neighbours. The final stress lies on the surface of strength(kappa + x) to rounding whatever the accuracy
-// of x.
+// Bracketed secant iteration, from where the root would be if the return were to a plane: there k grows in
+// proportion to the yield function of the trial stress, hence linearly as the cohesion falls, and the root
+// for small increments is found without another return. A lane freezes when it has converged, so its bits do
+// not depend on its neighbours. The final stress lies on the surface of strength(kappa + x) to rounding
+// whatever the accuracy of x.
 #pragma once
 
 #include "mpm/material/strength.hpp"
@@ -77,8 +79,10 @@ class PlasticCorrector {
     }
 
     Pack last = low, at_last = at_low;
-    x = select(active, min(low + at_low, high), x);
-    Pack width = high - low, last_slope = broadcast(-1.0);
+    const Guess guess = root_on_plane(particle, trial, low, at_low);
+    x = select(active, min(guess.root, high), x);
+    Pack width = high - low, last_slope = guess.slope;
+    bool moved = true;  // the stress belongs to an earlier x
     for (int i = 1; i <= kMaxIterations && any(active); ++i) {
       const Pack h = residual(particle, trial, x, s);
       const Mask above = active & (h > 0), below = active & ~above;
@@ -102,9 +106,35 @@ class PlasticCorrector {
       at_last = select(active, h, at_last);
       last_slope = select(active, slope, last_slope);
       x = select(active & ~done, next, x);
+      moved = any(active & ~done);
       active &= ~(done | last_step);
     }
-    residual(particle, trial, x, s);
+    if (moved) residual(particle, trial, x, s);
+  }
+
+  struct Guess {
+    Pack root, slope;  // slope of h at the start
+  };
+
+  // Two Newton steps from `low`, where h is `at_low`, with the h of a return to the Mohr-Coulomb plane.
+  POLDER_INLINE Guess root_on_plane(const Particle& particle, const Pack (&trial)[3], Pack low,
+                                    Pack at_low) const {
+    const State m = strength_.at(particle, low);
+    const Pack cohesion = m.cohesion - Pack{};
+    const Pack excess = trial[0] * coefficients_.up - trial[2] * coefficients_.down - m.twice_cohesion();
+    const Mask yields = excess > 0;
+    // growth of k with a loss of cohesion
+    const Pack growth =
+        select(yields, (at_low + low) * 2 * m.cos_friction / select(yields, excess, broadcast(1.0)), Pack{});
+    const auto slope_at = [&](Pack x) __attribute__((always_inline)) {
+      const Pack slope = -growth * strength_.cohesion_slope(particle, x) - 1.0;
+      return select(slope < -0.1, slope, broadcast(-1.0));  // near snap-back: no model
+    };
+    const Pack slope = slope_at(low), x = low - at_low / slope;
+    const Pack lost = cohesion - strength_.at(particle, x).cohesion;
+    const Pack h = (at_low + low) + growth * lost - x;
+    const Pack root = x - h / slope_at(x);
+    return {select(root > low, root, x), slope};
   }
 
   static constexpr int kMaxIterations =

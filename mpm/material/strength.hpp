@@ -6,6 +6,7 @@
 //                            increment, so that the volume change of a step is exact to second order, also
 //                            across knots
 //   lowest_cohesion(particle), bounds()   what they can never fall below, for the elastic skip
+//   cohesion_slope(particle, increment)   change of the cohesion with the plastic strain there
 //   varies(), knots(), knot(j, particle)  does at() change with the increment, and the strains where its
 //   slope jumps
 #pragma once
@@ -44,6 +45,7 @@ class ConstantStrength {
   POLDER_INLINE StrengthBounds bounds() const {
     return {state_.sin_friction, state_.sin_friction, state_.cos_friction, state_.cutoff};
   }
+  POLDER_INLINE Pack cohesion_slope(Particle, Pack) const { return Pack{}; }
   static constexpr bool varies() { return false; }
   static constexpr int knots() { return 0; }
   POLDER_INLINE Pack knot(int, Particle) const { return Pack{}; }
@@ -59,6 +61,15 @@ POLDER_INLINE Pack value_of(const mpm::Curve& c, Pack kappa) {
   for (int i = 0; i + 1 < c.knots; ++i)
     v += c.slope[i] * clamp(kappa - c.strain[i], 0, c.strain[i + 1] - c.strain[i]);
   return v;
+}
+
+// Slope of the curve; at a knot that of the part behind it.
+POLDER_INLINE Pack slope_of(const mpm::Curve& c, Pack kappa) {
+  if (c.kind == mpm::Curve::Kind::exponential) return c.rate * (c.residual - c.start) * exp(-c.rate * kappa);
+  Pack slope = Pack{};
+  for (int i = 0; i + 1 < c.knots; ++i)
+    slope = select((kappa >= c.strain[i]) & (kappa < c.strain[i + 1]), broadcast(c.slope[i]), slope);
+  return slope;
 }
 
 // Mean of the curve over [from, to].
@@ -138,6 +149,16 @@ class MobilisedStrength {
     return capillary_index_ < 0 ? Pack{} : p.capillary * value_of(capillary_, p.kappa + increment);
   }
 
+  POLDER_INLINE Pack cohesion_slope_at(const Particle& p, Pack increment) const {
+    return slope_of(cohesion_, p.kappa + increment);
+  }
+  POLDER_INLINE Pack capillary_slope_at(const Particle& p, Pack increment) const {
+    return capillary_index_ < 0 ? Pack{} : p.capillary * slope_of(capillary_, p.kappa + increment);
+  }
+  POLDER_INLINE Pack cohesion_slope(const Particle& p, Pack increment) const {
+    return cohesion_slope_at(p, increment) + capillary_slope_at(p, increment);
+  }
+
   POLDER_INLINE double lowest_cohesion(const Particle&) const { return cohesion_.lowest; }
   POLDER_INLINE StrengthBounds bounds() const { return bounds_; }
   POLDER_INLINE bool varies() const { return varies_; }
@@ -201,6 +222,10 @@ class ScatteredStrength {
     }
     return m;
   }
+  POLDER_INLINE Pack cohesion_slope(const Particle& p, Pack increment) const {
+    return mobilised_.cohesion_slope_at(p.mobilised, increment) * p.cohesion_factor +
+           mobilised_.capillary_slope_at(p.mobilised, increment);
+  }
   POLDER_INLINE Pack lowest_cohesion(const Particle& p) const {
     return mobilised_.lowest_cohesion(p.mobilised) * p.cohesion_factor;
   }
@@ -242,6 +267,9 @@ class UndrainedStrength {
   }
   POLDER_INLINE StrengthState<double, Pack> at(const Particle& p, Pack increment) const {
     return {0, 1, 0, shear_strength(p, increment), std::numeric_limits<double>::infinity()};
+  }
+  POLDER_INLINE Pack cohesion_slope(const Particle& p, Pack increment) const {
+    return select(p.peak + softening_ * (p.kappa + increment) > p.residual, broadcast(softening_), Pack{});
   }
   POLDER_INLINE Pack lowest_cohesion(const Particle& p) const { return varies() ? p.residual : p.peak; }
   POLDER_INLINE StrengthBounds bounds() const { return {}; }
