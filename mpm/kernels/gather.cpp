@@ -196,13 +196,17 @@ POLDER_INLINE void gather_motion(const MoveFrame<D>& m, ParticleSet<D>& set, int
     else if (o.affine != AffineKind::none)
       store(&set.velocity[d][p], q.value[d]);
   }
-  if (o.affine != AffineKind::none)
-    for (int k = 0; k < D * D; ++k)
-      store(&set.affine[k][p], select(real, kWant == Want::moment ? q.moment[k] : q.gradient[k], Pack{}));
+  if constexpr (kWant == Want::values) {  // nothing that strains
+    motion = Motion<D>{};
+  } else {
+    if (o.affine != AffineKind::none)
+      for (int k = 0; k < D * D; ++k)
+        store(&set.affine[k][p], select(real, kWant == Want::moment ? q.moment[k] : q.gradient[k], Pack{}));
 
-  // Padding points feel nothing, so that their state stays harmless.
-  for (int k = 0; k < D * D; ++k) motion.gradient[k] = select(real, dt * q.gradient[k], Pack{});
-  motion.hoop = m.hoop ? select(real, dt * q.value[0] / x[0], Pack{}) : Pack{};
+    // Padding points feel nothing, so that their state stays harmless.
+    for (int k = 0; k < D * D; ++k) motion.gradient[k] = select(real, dt * q.gradient[k], Pack{});
+    motion.hoop = m.hoop ? select(real, dt * q.value[0] / x[0], Pack{}) : Pack{};
+  }
   move_pack<D>(set, p, real, x, l, q.value, motion.gradient, m.transfer.bodies[body].law != nullptr, dt, m.h,
                fastest);
 }
@@ -309,6 +313,10 @@ MoveResult move_of(mpm::Transfer<D>& t, const MoveOptions& o,
 template <int D>
 MoveResult move_any(mpm::Transfer<D>& t, const MoveOptions& o, const Reals* v_old, const Reals& v) {
   if (o.affine == AffineKind::apic) return move_of<D, 1, Want::moment>(t, o, {v.data()});
+  const bool strains = std::any_of(t.bodies.begin(), t.bodies.end(),
+                                   [](const mpm::Body<D>& body) { return body.law != nullptr; });
+  if (o.update_velocity && !strains && o.affine == AffineKind::none)
+    return move_of<D, 2, Want::values>(t, o, {v_old->data(), v.data()});
   if (o.update_velocity) return move_of<D, 2, Want::gradient>(t, o, {v_old->data(), v.data()});
   return move_of<D, 1, Want::gradient>(t, o, {v.data()});
 }
