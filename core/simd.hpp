@@ -144,7 +144,7 @@ namespace detail {
 template <int N>
 POLDER_INLINE typename VectorTypes<N>::Real load_twice(const double* p) {
   static_assert(N == 4 || N == 8);
-  using Half = typename VectorTypes<N / 2>::Real;
+  using Half [[maybe_unused]] = typename VectorTypes<N / 2>::Real;
 #if defined(__AVX512F__)
   if constexpr (N == 8)
     return __builtin_ia32_broadcastf64x4_512(*reinterpret_cast<const Half*>(p), VectorTypes<8>::Real{}, -1);
@@ -173,6 +173,13 @@ struct Reg {
   static POLDER_INLINE Reg load(const double* p) {
     Reg a;
     for (int i = 0; i < kCount; ++i) a.r[i] = reinterpret_cast<const Chunk*>(p)[i];
+    return a;
+  }
+  // From any address.
+  static POLDER_INLINE Reg load_any(const double* p) {
+    typedef Chunk Loose __attribute__((aligned(8)));
+    Reg a;
+    for (int i = 0; i < kCount; ++i) a.r[i] = *reinterpret_cast<const Loose*>(p + i * kChunk);
     return a;
   }
   POLDER_INLINE void store(double* p) const {

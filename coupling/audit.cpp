@@ -46,9 +46,11 @@ void Audit<D>::add_step(const World<D>& world, double dt, double damping, double
   const mpm::Skeleton<D>& k = world.skeleton;
   const PoreWater<D>* water = world.pore_water.get();
   const bool corrected = water != nullptr && !water->correction.empty();
-  std::vector<Part> parts(k.grid().blocks());
+  thread_local std::vector<Part> store;  // work space of the calling thread, for all
+  std::vector<Part>& parts = store;
+  parts.assign(k.grid().blocks(), Part{});
   parallel_for(k.grid().blocks(), [&](int block) {
-    Part& part = parts[block];
+    Part part;  // in registers: sums in memory wait for each other
     for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
       const double* s = &k.sums()[static_cast<std::size_t>(i) * 8];
       const double mass = s[0];
@@ -75,10 +77,11 @@ void Audit<D>::add_step(const World<D>& world, double dt, double damping, double
         part.magnitude += std::abs(mass * dv);
       }
     }
+    parts[block] = part;
   });
   const auto add_water = [&](const Reals& sums, const Reals& before, const Reals& after) {
     parallel_for(k.grid().blocks(), [&](int block) {
-      Part& part = parts[block];
+      Part part = parts[block];
       for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
         const double mass = sums[static_cast<std::size_t>(i) * 8];
         if (!(mass > 0)) continue;
@@ -92,6 +95,7 @@ void Audit<D>::add_step(const World<D>& world, double dt, double damping, double
           part.magnitude += std::abs(mass * (v1 - v0));
         }
       }
+      parts[block] = part;
     });
   };
   if (water != nullptr && water->layer) {

@@ -122,7 +122,8 @@ void BoundarySet<D>::apply(double time, double dt, const Reals& sums, Reals& v, 
       u = w = (m * u + n * w) / (m + n);
     }
   }
-  std::vector<std::array<double, D>> prescribed(specs_.size());
+  thread_local std::vector<std::array<double, D>> prescribed;  // work space
+  prescribed.assign(specs_.size(), {});
   for (std::size_t s = 0; s < specs_.size(); ++s)
     for (int d = 0; d < D; ++d)
       if (specs_[s].kind == BoundaryKind::velocity && specs_[s].prescribed[d])

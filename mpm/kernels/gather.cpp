@@ -286,7 +286,9 @@ void move_body(const MoveFrame<D>& m, int block, int body, std::vector<Motion<D>
 template <int D, int kFields, Want kWant>
 MoveResult move_of(mpm::Transfer<D>& t, const MoveOptions& o,
                    const std::array<const double*, kFields>& fields) {
-  std::vector<BlockResult> results(t.grid->occupied_blocks());
+  thread_local std::vector<BlockResult> store;  // work space of the calling thread, for all
+  std::vector<BlockResult>& results = store;
+  results.assign(t.grid->occupied_blocks(), BlockResult{});
   parallel_for_work(work_of_blocks(t), [&](int block) {
     alignas(64) double velocities[mpm::Transfer<D>::kTileNodes * kVectorLanes<D> * kFields];
     load_tile<D, kFields>(*t.grid, block, fields, velocities);

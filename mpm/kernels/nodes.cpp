@@ -50,11 +50,10 @@ double predict_of(const Grid<D>& grid, const mpm::NodePrediction<D>& p, const Re
       old.store(out);
       return 0.0;
     }
-    alignas(32) double f[4] = {};
-    for (int d = 0; d < D; ++d) f[d] = s[1 + D + d];
-    Reg<4> a = Reg<4>::load(f) / s[0] + gravity;
+    Reg<4> a = components<D>(Reg<4>::load_any(s + 1 + D)) / s[0] + gravity;
     if (p.acceleration != nullptr) a += components<D>(Reg<4>::load(&(*p.acceleration)[i * kVector]));
     if (p.damping > 0) {
+      alignas(32) double f[4];
       a.store(f);
       // Damping of a held component would only falsify its reaction.
       for (int d = 0; d < D; ++d)

@@ -6,38 +6,52 @@
 namespace polder::POLDER_SIMD_NAMESPACE {
 namespace {
 
+// A row of a block's nodes from the tiles of the three blocks side by side whose row `of_row` (in their own
+// nodes, from the tile's first) lies there; -1 or a block of the halo has no tile.
+template <int D, int kWidth>
+POLDER_INLINE void add_row(const mpm::Transfer<D>& transfer, const int* blocks, int of_row,
+                           Reg<kWidth> (&row)[Grid<D>::kSide]) {
+  constexpr int kSide = Grid<D>::kSide, kTile = mpm::Transfer<D>::kTileSide;
+  const auto tile_row = [&](int block) -> const double* {
+    if (block < 0 || block >= transfer.grid->occupied_blocks()) return nullptr;
+    return transfer.tiles.data() +
+           (static_cast<std::size_t>(block) * mpm::Transfer<D>::kTileNodes + of_row * kTile) * kWidth;
+  };
+  // A tile covers nodes [-1, kSide + 3) of its block.
+  if (const double* before = tile_row(blocks[0]))
+    for (int x = 0; x < 3; ++x) row[x] += Reg<kWidth>::load(before + (x + 1 + kSide) * kWidth);
+  if (const double* own = tile_row(blocks[1]))
+    for (int x = 0; x < kSide; ++x) row[x] += Reg<kWidth>::load(own + (x + 1) * kWidth);
+  if (const double* behind = tile_row(blocks[2])) row[kSide - 1] += Reg<kWidth>::load(behind);
+}
+
 // finish(slot, sum): what else happens to a block, first slot and first sum.
 template <int D, int kWidth, class Finish>
 void sum_width(mpm::Transfer<D>& transfer, Reals& out, const Finish& finish) {
   constexpr int kSide = Grid<D>::kSide, kTile = mpm::Transfer<D>::kTileSide;
   const Grid<D>& grid = *transfer.grid;
+  // The tile of a neighbour before (0), beside (1) or behind (2) along an axis covers this node of the block.
+  const auto covers = [](int neighbour, int node) {
+    return neighbour == 1 || (neighbour == 0 ? node < 3 : node == kSide - 1);
+  };
   parallel_for(grid.blocks(), [&](int block) {
     const std::size_t slot = static_cast<std::size_t>(block) * Grid<D>::kCells;
     double* sum = out.data() + slot * kWidth;
-    std::memset(sum, 0, sizeof(double) * Grid<D>::kCells * kWidth);
-    const auto& neighbours = grid.neighbours(block);
-    for (int k = 0; k < Grid<D>::kNeighbours; ++k) {
-      const int n = neighbours[k];
-      if (n < 0 || n >= grid.occupied_blocks()) continue;
-      const int shift[3] = {k % 3 - 1, k / 3 % 3 - 1, D == 3 ? k / 9 - 1 : 0};
-      int lo[3] = {0, 0, 0}, hi[3] = {1, 1, 1}, from[3] = {0, 0, 0};
-      for (int d = 0; d < D; ++d) {  // the neighbour's tile covers its nodes [-1, kSide + 3)
-        lo[d] = shift[d] > 0 ? kSide - 1 : 0;
-        hi[d] = shift[d] < 0 ? 3 : kSide;
-        from[d] = 1 - shift[d] * kSide;
-      }
-      const double* tile =
-          transfer.tiles.data() + static_cast<std::size_t>(n) * mpm::Transfer<D>::kTileNodes * kWidth;
-      for (int z = lo[2]; z < hi[2]; ++z)
-        for (int y = lo[1]; y < hi[1]; ++y) {
-          const double* in =
-              tile +
-              (((D == 3 ? (z + from[2]) * kTile : 0) + y + from[1]) * kTile + lo[0] + from[0]) * kWidth;
-          double* to = sum + (((D == 3 ? z * kSide : 0) + y) * kSide + lo[0]) * kWidth;
-          for (int x = 0; x < hi[0] - lo[0]; ++x)
-            (Reg<kWidth>::load(to + x * kWidth) + Reg<kWidth>::load(in + x * kWidth)).store(to + x * kWidth);
+    const int* neighbours = grid.neighbours(block).data();
+    for (int z = 0; z < (D == 3 ? kSide : 1); ++z)
+      for (int y = 0; y < kSide; ++y) {
+        Reg<kWidth> row[kSide] = {};
+        for (int bz = D == 3 ? 0 : 1; bz < (D == 3 ? 3 : 2); ++bz) {
+          if (!covers(bz, z)) continue;
+          for (int by = 0; by < 3; ++by) {
+            if (!covers(by, y)) continue;
+            const int row_z = D == 3 ? z + 1 + (1 - bz) * kSide : 0, row_y = y + 1 + (1 - by) * kSide;
+            add_row<D, kWidth>(transfer, neighbours + (D == 3 ? bz * 9 : 0) + by * 3, row_z * kTile + row_y,
+                               row);
+          }
         }
-    }
+        for (int x = 0; x < kSide; ++x) row[x].store(sum + ((z * kSide + y) * kSide + x) * kWidth);
+      }
     finish(slot, sum);
   });
 }

@@ -96,10 +96,12 @@ void load_tile(const Grid<D>& grid, int block, const std::array<const double*, k
 }
 
 // Work of the occupied blocks for parallel_for_work: particles, and what a tile costs in particles.
+// Work space of the calling thread: good until it asks again.
 template <int D>
-std::vector<long> work_of_blocks(const mpm::Transfer<D>& transfer) {
+const std::vector<long>& work_of_blocks(const mpm::Transfer<D>& transfer) {
   constexpr long kTileWork = mpm::Transfer<D>::kTileNodes / 8;
-  std::vector<long> before(transfer.grid->occupied_blocks() + 1, 0);
+  thread_local std::vector<long> before;
+  before.assign(transfer.grid->occupied_blocks() + 1, 0);
   for (int b = 0; b < transfer.grid->occupied_blocks(); ++b) {
     before[b + 1] = before[b] + kTileWork;
     for (const mpm::Body<D>& body : transfer.bodies) before[b + 1] += body.particles->ranges[b].count;
