@@ -18,6 +18,12 @@ target_compile_options(polder_flags INTERFACE -Wall -Wextra -fno-math-errno -fno
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(polder_flags INTERFACE -Wno-restrict)  # false alarm on "literal" + std::string, GCC bug 105651
 endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64"
+   AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 12 AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 12.3)
+  # Copied 32 bytes at a time, the constants {a, a, 0, 0} become {a, a, a, a}, GCC bug 108599. Copies of 16 bytes are
+  # right; vector code is not touched by this. Test: "a list that ends in zeros".
+  target_compile_options(polder_flags INTERFACE -mmove-max=128 -mstore-max=128)
+endif()
 if(POLDER_SIMD STREQUAL "native")
   target_compile_options(polder_flags INTERFACE -march=native)
 endif()
