@@ -31,6 +31,7 @@ std::vector<ParticleField> ParticleSet<D>::fields() {
   for (int k = 0; k < D * D; ++k)
     if (!affine[k].empty()) add("affine_" + std::to_string(k), affine[k]);
   if (!pore_water.empty()) add("pore_water", pore_water);
+  if (!retained_water.empty()) add("retained_water", retained_water);
   if (!suction_stress.empty()) add("suction_stress", suction_stress);
   if (!conductivity.empty()) add("conductivity", conductivity);
   if (!wet.empty()) add("wet", wet);

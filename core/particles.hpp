@@ -50,6 +50,7 @@ class ParticleSet {
   std::array<Reals, D * D> affine;         // C of the affine transfer [1/s]
   std::array<Reals, D> body_acceleration;  // besides gravity [m/s2]
   Reals pore_water;                        // degree of saturation times water density [kg per m3 of pores]
+  Reals retained_water;        // where water has points of its own: what stays with the grains of it [kg]
   Reals suction_stress;        // degree of saturation times suction [Pa], isotropic part of the total stress
   Reals conductivity;          // hydraulic conductivity [m/s]
   bool group_by_cell = false;  // keep home_cell

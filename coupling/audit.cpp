@@ -134,7 +134,8 @@ Totals Audit<D>::totals(const World<D>& world) const {
     for (int p = 0; p < set.slots(); ++p) {
       if (set.id[p] < 0) continue;
       const double pores = set.volume[p] - set.mass[p] / set.density_solid;
-      const double mass = set.mass[p] + (set.pore_water.empty() ? 0.0 : set.pore_water[p] * pores);
+      const double mass = set.mass[p] + (set.pore_water.empty() ? 0.0 : set.pore_water[p] * pores) +
+                          (set.retained_water.empty() ? 0.0 : set.retained_water[p]);
       t.solid_mass += set.mass[p];
       if (unsaturated && !set.pore_water.empty())
         t.water_volume += set.pore_water[p] * per_density * pores;

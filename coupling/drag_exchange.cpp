@@ -166,8 +166,11 @@ void follow_flow(World<D>& world) {
           std::clamp(1 - set.mass[p] / (set.density_solid * set.volume[p]), kLeastPorosity, 1.0);
       const int slot = grid.slot(set.cell_of(grid, p));
       // Beside water that stands alone in the cell the soil's own water is faster, by the ratio of
-      // porosities.
-      const double faster = slot < 0 ? 1.0 : std::max(1.0, w.porosity[slot] / porosity);
+      // porosities. What the grains retain does not flow.
+      const double retained = set.retained_water.empty()
+                                  ? 0.0
+                                  : set.retained_water[p] / (world.scene.water.density * set.volume[p]);
+      const double faster = std::max(porosity - retained, slot < 0 ? 0.0 : w.porosity[slot]) / porosity;
       set.conductivity[p] =
           apparent_conductivity(material, fluid, porosity, faster * relative_speed(world, set, p));
     });

@@ -135,7 +135,8 @@ void set_saturation(World<D>& world) {
     if (m.porosity <= 0) continue;
     const int capillary = world.layouts[set.material].capillary_factor;
     const int n = set.slots();
-    // In two layers the soil's own points hold only the water that stays above the phreatic line.
+    // In two layers the soil's own points hold only the water that stays with the grains above the phreatic
+    // line.
     const bool layered = world.pore_water->layer != nullptr;
     set.pore_water.assign(n, layered ? 0.0 : water.density);
     set.wet.assign(n, 1.0);
@@ -150,10 +151,16 @@ void set_saturation(World<D>& world) {
     }
     if (water.phreatic.empty()) continue;
     if (water.suction_above != 0) set.suction_stress.assign(n, 0.0);
+    if (world.scene.retains_water()) set.retained_water.assign(n, 0.0);
     for (int p = 0; p < n; ++p) {
       if (set.position[D - 1][p] <= water_table(water, at(set, p))) continue;
-      if (!layered) set.wet[p] = 0;
-      set.pore_water[p] = water.saturation_above * water.density;
+      if (!layered) {
+        set.wet[p] = 0;
+        set.pore_water[p] = water.saturation_above * water.density;
+      } else if (world.scene.retains_water()) {
+        set.retained_water[p] =
+            water.saturation_above * water.density * (set.volume[p] - set.mass[p] / set.density_solid);
+      }
       if (!set.suction_stress.empty()) set.suction_stress[p] = water.saturation_above * water.suction_above;
       if (capillary >= 0) set.state[capillary][p] = 1;
     }

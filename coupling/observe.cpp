@@ -184,11 +184,15 @@ double Simulation::Run<D>::quantity_of(const ParticleSet<D>& set, int p, const s
     const double own = set.pore_water.empty() ? 0.0 : set.pore_water[p] / scene.water.density;
     if (world->pore_water && world->pore_water->points && !set.wet.empty() && set.wet[p] > 0) return 1.0;
     if (!world->pore_water || !world->pore_water->layer || set.wet.empty()) return own;
-    // In two layers the pores hold what the points of water around bring, too.
+    // In two layers the pores hold what the points of water around bring, besides what the grains retain.
+    const double pores = set.volume[p] - set.mass[p] / set.density_solid;
+    const double retained = set.retained_water.empty()
+                                ? 0.0
+                                : std::min(1.0, set.retained_water[p] / (scene.water.density * pores));
     const WaterLayer<D>& layer = *world->pore_water->layer;
     const int slot = world->skeleton.grid().slot(set.cell_of(world->skeleton.grid(), p));
-    if (slot < 0 || !(layer.soil_fill[slot] > 0)) return own;
-    return std::max(own, std::min(1.0, world->pore_water->fill[slot] / layer.soil_fill[slot]));
+    if (slot < 0 || !(layer.soil_fill[slot] > 0)) return retained;
+    return retained + (1 - retained) * std::min(1.0, world->pore_water->fill[slot] / layer.soil_fill[slot]);
   }
   if (q == "cohesion" || q == "friction_angle") {
     const mpm::StateLayout& layout = world->layouts[set.material];

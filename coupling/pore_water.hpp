@@ -58,10 +58,10 @@ struct WaterLayer {
   bool relative_inertia;                         // of water in pores, kept
   std::unique_ptr<WaterViscosity<D>> viscosity;  // where the scene asks for it
   double spacing = 0;                            // of new points [m]
-  // Cells (slots): volume of the water's points; share taken by soil, its pores included; resistance of the
-  // pores per volume of water [Pa s/m2]; volume that has come in through open sides and has no point yet
-  // [m3].
-  Reals sums, soil_fill, drag, owed;
+  // Cells (slots): volume of the water's points; that of the grains with the water they retain [m3]; share
+  // taken by soil, its pores included; resistance of the pores per volume of water [Pa s/m2]; volume that has
+  // come in through open sides and has no point yet [m3].
+  Reals sums, grain_volume, soil_fill, drag, owed;
   // Where relative inertia is neglected, share of the water that is in pores: of cells, of nodes [-]; and
   // change of the nodes' velocity of water with that of the grains.
   Reals in_pores, tied, following;

@@ -61,6 +61,10 @@ bool Scene::fluidises() const {
                      [](const Material& m) { return m.fluidisation_porosity > 0; });
 }
 
+bool Scene::retains_water() const {
+  return layered() && water.saturation_above > 0 && !water.phreatic.empty();
+}
+
 bool Scene::drag_follows_flow() const {
   return std::any_of(materials.begin(), materials.end(),
                      [](const Material& m) { return m.porosity > 0 && m.drag_law != DragLaw::darcy; });

@@ -384,6 +384,7 @@ struct Scene {
   bool fluidises() const;          // some material may lose contact between its grains
   bool drag_follows_flow() const;  // some drag law depends on more than the soil
   bool on_points() const;          // water is on the skeleton's points, with its pressure
+  bool retains_water() const;      // two layers: soil above the phreatic line keeps water of its own
   bool kozeny_carman() const;  // conductivities follow the porosity, those of all porous materials or of none
   std::vector<mpm::MaterialParameters> skeleton_materials() const;
   bool operator==(const Scene&) const = default;

@@ -148,9 +148,8 @@ void take_back_drift(World<D>& world) {
   Reals& excess = layer.divergence;  // work space
   excess.assign(grid.slots(), 0.0);
   for (const fdm::ActiveCell<D>& cell : w.cells.cells()) {
-    const double grains = w.cell_sums[static_cast<std::size_t>(cell.slot) * 4 + 1];
     const double water = layer.sums[static_cast<std::size_t>(cell.slot) * 4];
-    excess[cell.slot] = (grains + water) / cell.volume - 1;
+    excess[cell.slot] = (layer.grain_volume[cell.slot] + water) / cell.volume - 1;
   }
   layer.correction.solve(excess, w.porosity, kDriftShare, layer.displacement);
   ParticleSet<D>& set = layer.fluid.points();
@@ -184,27 +183,31 @@ void update_layer_cells(World<D>& world) {
   layer.drag.resize(grid.slots());
   layer.soil_fill.resize(grid.slots());
   if (!layer.relative_inertia) layer.in_pores.resize(grid.slots());
+  layer.grain_volume.resize(grid.slots());
   const double cell_volume = std::pow(grid.spacing(), D), unit_weight = world.unit_weight();
   const bool radial = world.scene.grid.space == Space::axisymmetric;
-  const bool follows_porosity = world.scene.kozeny_carman();
+  const bool follows_porosity = world.scene.kozeny_carman(), retains = world.scene.retains_water();
+  const double per_density = 1 / world.scene.water.density;
   parallel_for(grid.slots(), [&](int i) {
     const double* s = &w.cell_sums[static_cast<std::size_t>(i) * 4];
+    const double grains = layer.grain_volume[i] = s[1] + (retains ? s[3] * per_density : 0.0);
     const double water = layer.sums[static_cast<std::size_t>(i) * 4];
     double volume = cell_volume;
     if (radial) volume *= grid.origin()[0] + (grid.index(i)[0] + 0.5) * grid.spacing();
     const bool some = s[0] > 1e-9 * volume;
     const double soil_fill = s[0] / volume;
-    const double pores = some ? std::clamp(1 - s[1] / s[0], kLeastPorosity, 1.0) : 1.0;  // of the soil alone
+    const double pores = some ? std::clamp(1 - grains / s[0], kLeastPorosity, 1.0) : 1.0;  // of soil, for it
     w.darcy_mobility[i] = 0;
     // Water fills the pores first, then the space beside and above the soil.
     const double room = pores * soil_fill * volume;
     w.fill[i] = water <= room ? water / (pores * volume) : std::min(soil_fill, 1.0) + (water - room) / volume;
     // Of the mixture: of soil where it ends with the water, of both where water stands above it.
     const double mixture = volume * std::clamp(std::max(soil_fill, w.fill[i]), 1e-9, 1.0);
-    w.porosity[i] = std::clamp(1 - s[1] / mixture, kLeastPorosity, 1.0);
+    w.porosity[i] = std::clamp(1 - grains / mixture, kLeastPorosity, 1.0);
     layer.soil_fill[i] = std::min(soil_fill, 1.0);
     double conductivity = some ? s[2] / s[0] : 0.0;
-    if (some && follows_porosity) conductivity *= kozeny_carman(pores);
+    if (some && follows_porosity)
+      conductivity *= kozeny_carman(std::clamp(1 - s[1] / s[0], kLeastPorosity, 1.0));
     // What makes the head lost across a layer of soil in the cell right: its share of the mixture, and water
     // that is slower by the ratio of the porosities than in the layer.
     const double layer_share = std::min(1.0, soil_fill * volume / mixture) * w.porosity[i] / pores;
@@ -228,8 +231,9 @@ void update_layer_cells(World<D>& world) {
       const int slot = grid.slot(soil.cell_of(grid, p));
       const double submerged =
           layer.soil_fill[slot] > 0 ? std::min(1.0, w.fill[slot] / layer.soil_fill[slot]) : 0.0;
-      const double grains = soil.mass[p] / soil.density_solid / soil.volume[p];
-      soil.nodal_weight[p] = submerged * (layer.held ? 1.0 : grains);
+      double grains = soil.mass[p] / soil.density_solid;
+      if (!soil.retained_water.empty()) grains += soil.retained_water[p] * per_density;
+      soil.nodal_weight[p] = submerged * (layer.held ? 1.0 : std::min(1.0, grains / soil.volume[p]));
     });
   }
 }
@@ -298,7 +302,10 @@ mpm::MoveResult step_two_layer(World<D>& world, const StepInput& in, long step) 
     Stopwatch watch(w.wall_seconds);
     take_back_drift(world);
   }
-  if (step % kWettingInterval == 0) wet_points(world);
+  if (step % kWettingInterval == 0) {
+    wet_points(world);
+    split_points(world);
+  }
   return moved;
 }
 
@@ -308,7 +315,7 @@ HeldWater<D>::HeldWater(World<D>& world) : world_(world) {
   if (world.pore_water->points) hold_point_water(world, true);
   if (!world.pore_water->layer) return;
   world.pore_water->layer->held = true;
-  give(0.0, world.scene.water.density);
+  give_pore_water(true);
 }
 
 template <int D>
@@ -317,20 +324,25 @@ HeldWater<D>::~HeldWater() {
   if (world_.pore_water->points) hold_point_water(world_, false);
   if (!world_.pore_water->layer) return;
   world_.pore_water->layer->held = false;
-  give(world_.scene.water.density, 0.0);
+  give_pore_water(false);
 }
 
-// Points of soil in water that hold `from` [kg per m3 of pores] hold `to`.
+// To points of soil in water: with what they retain their pores are full. Or takes it away again.
 template <int D>
-void HeldWater<D>::give(double from, double to) {
+void HeldWater<D>::give_pore_water(bool full) {
   const PoreWater<D>& w = *world_.pore_water;
   const Grid<D>& grid = world_.skeleton.grid();
+  const double density = world_.scene.water.density;
   for (auto& body : world_.skeleton.bodies()) {
     ParticleSet<D>& set = *body;
     for (int p = 0; p < set.slots() && !set.pore_water.empty(); ++p) {
-      if (set.id[p] < 0 || set.pore_water[p] != from) continue;
+      if (set.id[p] < 0) continue;
       const int slot = grid.slot(set.cell_of(grid, p));
-      if (to == 0 || (slot >= 0 && w.cells.active(slot))) set.pore_water[p] = to;
+      set.pore_water[p] = 0;
+      if (!full || slot < 0 || !w.cells.active(slot)) continue;
+      const double pores = set.volume[p] - set.mass[p] / set.density_solid;
+      const double retained = set.retained_water.empty() ? 0.0 : set.retained_water[p] / pores;
+      set.pore_water[p] = std::max(0.0, density - retained);
     }
   }
 }

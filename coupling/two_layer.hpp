@@ -41,7 +41,7 @@ class HeldWater {
   HeldWater& operator=(const HeldWater&) = delete;
 
  private:
-  void give(double from, double to);
+  void give_pore_water(bool full);
   World<D>& world_;
 };
 
@@ -57,6 +57,10 @@ double wave_factor(const Scene& scene);
 // point [m/s].
 template <int D>
 double surface_wave_speed(const World<D>& world);
+
+// Makes two points of one that is too large for the pores around it.
+template <int D>
+void split_points(World<D>& world);
 
 // Keeps the points inside the grid, and lets water in and out at open sides.
 template <int D>

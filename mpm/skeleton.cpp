@@ -184,6 +184,7 @@ double Skeleton<D>::wave_speed(const std::vector<MaterialParameters>& materials)
       double mass = body->mass[p];
       if (!body->pore_water.empty())
         mass += body->pore_water[p] * (body->volume[p] - mass / body->density_solid);
+      if (!body->retained_water.empty()) mass += body->retained_water[p];
       density = std::min(density, mass / body->volume[p]);
     }
     fastest = std::max(fastest, std::sqrt(m.wave_modulus() / density));

@@ -60,7 +60,7 @@ template <int D>
 void scatter_state(Transfer<D>& transfer, AffineKind affine, Reals& sums, Reals& velocity);
 
 // Particles to cells by the overlap of their domains: {V of wet soil, V of its solid, conductivity * V, mass
-// of the water in all soil} into cells [slots * kCellSum].
+// of the water in all soil, or where some is retained that} into cells [slots * kCellSum].
 template <int D>
 void scatter_cells(Transfer<D>& transfer, Reals& cells);
 

@@ -66,6 +66,7 @@ POLDER_INLINE void load_fields(const mpm::Transfer<D>& transfer, const ParticleS
   const Pack volume = select(real, load(&set.volume[p]), Pack{});
   Pack mass = solid;
   if (!set.pore_water.empty()) mass += load(&set.pore_water[p]) * (volume - solid * (1 / set.density_solid));
+  if (!set.retained_water.empty()) mass += load(&set.retained_water[p]);
   Pack sigma[ParticleSet<D>::kStress];
   for (int k = 0; k < ParticleSet<D>::kStress; ++k) sigma[k] = select(real, load(&set.stress[k][p]), Pack{});
   if (!set.suction_stress.empty()) {
@@ -266,7 +267,10 @@ void scatter_cells_of(mpm::Transfer<D>& transfer) {
         const Pack grains = solid * (1 / set.density_solid);
         Pack fields[4] = {wet, load(&set.wet[p]) * grains};
         if (!set.conductivity.empty()) fields[2] = wet * load(&set.conductivity[p]);
-        if (!set.pore_water.empty()) fields[3] = load(&set.pore_water[p]) * (volume - grains);
+        if (!set.retained_water.empty())
+          fields[3] = load(&set.retained_water[p]);
+        else if (!set.pore_water.empty())
+          fields[3] = load(&set.pore_water[p]) * (volume - grains);
         Reg<4> node[kLanes];
         to_nodes<4>(fields, node);
         Mask start = Mask{};

@@ -14,7 +14,8 @@ struct OfSkeleton {
   POLDER_INLINE Pack mass(const ParticleSet<D>& set, int p) const {
     const Pack solid = load(&set.mass[p]);
     if (set.pore_water.empty()) return solid;
-    return solid + load(&set.pore_water[p]) *
+    const Pack retained = set.retained_water.empty() ? Pack{} : load(&set.retained_water[p]);
+    return solid + retained + load(&set.pore_water[p]) *
                        (select(solid > 0, load(&set.volume[p]), Pack{}) - solid * (1 / set.density_solid));
   }
 };

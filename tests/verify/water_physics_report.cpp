@@ -1,5 +1,6 @@
 // Prints the tables of docs/validation/water_physics.md: drag and the water's own stresses in two layers,
 // measured with the functions that the tests use.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -9,6 +10,7 @@
 #include "tests/verify/water_drag.hpp"
 #include "tests/verify/water_lift.hpp"
 #include "tests/verify/water_shear.hpp"
+#include "tests/verify/water_wetting.hpp"
 
 using namespace polder;
 using namespace polder::verify;
@@ -97,11 +99,30 @@ void settling_table() {
         }
 }
 
+void wetting_table() {
+  std::printf(
+      "| retained | h [m] | front | inflow | stress before | after | level falling | water "
+      "|\n|---|---|---|---|---|---|---|---|\n");
+  for (const double retained : {0.0, 0.5, 0.8})
+    for (const double h : {0.1, 0.05}) {
+      const Choice c{.formulation = "two-layer", .cell = h, .conductivity = 1e-2};
+      const Wetting up = rising_front(c, retained);
+      const Draining down = falling_front(c, retained);
+      std::printf("| %g | %g | %.2f | %+.1f %% | %+.3f | %+.3f | %.2f | %.0e |\n", retained, h, up.front_error,
+                  100 * up.inflow_error, up.stress_before, up.stress_after, down.level_error,
+                  std::max(std::abs(up.water_error), std::abs(down.water_error)));
+      std::fflush(stdout);
+    }
+}
+
 }  // namespace
 
 int main(int count, char** names) {
-  return print_tables(
-      "water_physics_report",
-      {{"beds", beds_table}, {"plates", plates_table}, {"lift", lift_table}, {"settling", settling_table}},
-      count, names);
+  return print_tables("water_physics_report",
+                      {{"beds", beds_table},
+                       {"plates", plates_table},
+                       {"lift", lift_table},
+                       {"settling", settling_table},
+                       {"wetting", wetting_table}},
+                      count, names);
 }
