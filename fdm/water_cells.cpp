@@ -42,6 +42,8 @@ FaceNodes<D> face_nodes(const ActiveCell<D>& cell, int axis, bool upper) {
 // one beyond it and of the one behind it. Across a surface: by volume. Along one that is but slightly
 // inclined: the surface stands at fill - 1/2 above the centres, and meets the line through them where that
 // falls to zero; else a column just too low to be active would draw water from its neighbour as over an edge.
+// Upwards the surface is always crossed: taken for one along it, a cell that has lost a little water to the
+// one above would see the surface rise, and the pressure with it, and lose more.
 double surface_distance(double behind, double own, double beyond) {
   const double across = own + beyond - 0.5, drop = behind - beyond;
   const double along = std::clamp(10 * (1 - own), 0.0, 1.0) * std::clamp((0.8 - drop) / 0.3, 0.0, 1.0);
@@ -246,7 +248,7 @@ void WaterCells<D>::refresh_distances(std::span<const double> fill) {
       const double own = std::min(fill[c.slot], 1.0),
                    beyond = f.outside < 0 ? 0 : std::min(fill[f.outside], 1.0);
       f.distance = h * (own + beyond - 0.5);
-      if (inclined_surfaces_) {
+      if (inclined_surfaces_ && f.axis != D - 1) {
         Index<D> behind = c.index;
         behind[f.axis] -= f.outward;
         const int slot = grid_.is_cell(behind) ? grid_.slot(behind) : -1;

@@ -82,8 +82,8 @@ class WaterCells {
   // lists were rebuilt.
   bool update(std::span<const double> fill, const WaterConditions<D>& conditions);
 
-  // Distances to surfaces that are but slightly inclined are measured along themselves (see surface_distance
-  // in the source): for water that flows freely. Off by default.
+  // Horizontal distances to surfaces that are but slightly inclined are measured along themselves (see
+  // surface_distance in the source): for water that flows freely. Off by default.
   void set_inclined_surfaces(bool on) { inclined_surfaces_ = on; }
 
   const Grid<D>& grid() const { return grid_; }

@@ -15,8 +15,9 @@ struct OfSkeleton {
     const Pack solid = load(&set.mass[p]);
     if (set.pore_water.empty()) return solid;
     const Pack retained = set.retained_water.empty() ? Pack{} : load(&set.retained_water[p]);
-    return solid + retained + load(&set.pore_water[p]) *
-                       (select(solid > 0, load(&set.volume[p]), Pack{}) - solid * (1 / set.density_solid));
+    return solid + retained +
+           load(&set.pore_water[p]) *
+               (select(solid > 0, load(&set.volume[p]), Pack{}) - solid * (1 / set.density_solid));
   }
 };
 

@@ -108,8 +108,8 @@ void wetting_table() {
       const Choice c{.formulation = "two-layer", .cell = h, .conductivity = 1e-2};
       const Wetting up = rising_front(c, retained);
       const Draining down = falling_front(c, retained);
-      std::printf("| %g | %g | %.2f | %+.1f %% | %+.3f | %+.3f | %.2f | %.0e |\n", retained, h, up.front_error,
-                  100 * up.inflow_error, up.stress_before, up.stress_after, down.level_error,
+      std::printf("| %g | %g | %.2f | %+.1f %% | %+.3f | %+.3f | %.2f | %.0e |\n", retained, h,
+                  up.front_error, 100 * up.inflow_error, up.stress_before, up.stress_after, down.level_error,
                   std::max(std::abs(up.water_error), std::abs(down.water_error)));
       std::fflush(stdout);
     }
