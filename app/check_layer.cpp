@@ -113,6 +113,12 @@ void check_shear(Reader& reader) {
 void check_water_layer(Reader& reader) {
   const Scene& scene = reader.scene;
   if (reader.failed("formulation")) return;
+  const coupling::Formulation* f = coupling::find_formulation(scene.formulation);
+  if (f && !f->chooses_pressure() && reader.given("numerics.pressure") && !reader.failed("numerics.pressure"))
+    reader.error("numerics.pressure",
+                 "formulation \"" + scene.formulation + "\" has " +
+                     (f->carrier == coupling::WaterCarrier::none ? "none" : "one way to find it only"),
+                 "no pressure; or formulation = \"two-layer\"");
   check_drag(reader);
   check_shear(reader);
   if (!scene.layered()) {

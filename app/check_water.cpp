@@ -267,15 +267,13 @@ void check_stages(Reader& reader) {
 // Where the pressure follows from the compression of the water, there must be some.
 void check_compressibility(Reader& reader) {
   const Scene& scene = reader.scene;
-  const coupling::Formulation& f = *coupling::find_formulation(scene.formulation);
   const std::string key = "pore_water.bulk_modulus";
-  if (f.pressure != coupling::PressureMethod::compressible || std::isfinite(scene.water.bulk_modulus) ||
-      reader.failed(key))
-    return;
+  if (!scene.compressible() || std::isfinite(scene.water.bulk_modulus) || reader.failed(key)) return;
   reader.error(key,
                "incompressible water with formulation \"" + scene.formulation +
                    "\", whose pressure follows from the compression of the water",
-               "a finite bulk modulus; or formulation = \"one-layer\"");
+               std::string("a finite bulk modulus; or ") +
+                   (scene.layered() ? "numerics.pressure = \"projected\"" : "formulation = \"one-layer\""));
 }
 
 }  // namespace

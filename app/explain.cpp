@@ -66,11 +66,9 @@ void explain_formulation(const Scene& scene, std::ostream& out) {
       << ", its inertia relative to the skeleton "
       << name_of(f.inertia, {{RelativeInertia::neglected, "neglected"}, {RelativeInertia::kept, "kept"}})
       << ", pressure "
-      << name_of(f.pressure,
-                 {{PressureMethod::projected,
-                   "projected: stiff water and low conductivity do not limit the step"},
-                  {PressureMethod::compressible,
-                   "explicitly from the bulk modulus: stiff water and Darcy flow limit the step"}})
+      << (!scene.compressible() ? "projected: stiff water and low conductivity do not limit the step"
+          : scene.layered()     ? "explicitly from the bulk modulus: stiff water limits the step"
+                            : "explicitly from the bulk modulus: stiff water and Darcy flow limit the step")
       << '\n';
   if (scene.layered()) explain_layer(scene, out);
   if (!scene.unsaturated()) return;
@@ -183,12 +181,15 @@ void explain_cost(const Scene& scene, double limit, double longest, std::ostream
     out << "  with soil full of water or nearly so anywhere the step falls to about " << digits(filled, 2)
         << " s, and a run takes up to " << digits(longest / filled, 2) << " times as long\n";
   Scene projected = scene;
-  projected.formulation = "one-layer";
+  if (scene.layered())
+    projected.numerics.pressure = coupling::PressureMethod::projected;
+  else
+    projected.formulation = "one-layer";
   projected.numerics.time_step.reset();
   double seconds = 0;
   for (const StageTime& t : estimate_run_time(projected, steps_of_motion(Simulation(projected))))
     if (!std::isnan(t.seconds())) seconds += t.seconds();
-  out << "one-layer     about " << duration_text(seconds)
+  out << (scene.layered() ? "projected     about " : "one-layer     about ") << duration_text(seconds)
       << (scene.on_points() ? ": the same case with a projected pressure in cells\n"
                             : ": the same equations with a projected pressure\n");
 }
@@ -240,8 +241,7 @@ int explain_command(const Arguments& a, std::ostream& out, std::ostream&) {
     out << "  random fields: no body has one, so none is generated\n";
   for (const std::string& n : notes(scene)) out << "  " << n << '\n';
   explain_run_time(scene, steps, out);
-  if (coupling::find_formulation(scene.formulation)->pressure == coupling::PressureMethod::compressible)
-    explain_cost(scene, limit.dt, step, out);
+  if (scene.compressible()) explain_cost(scene, limit.dt, step, out);
   return static_cast<int>(ExitCode::done);
 }
 

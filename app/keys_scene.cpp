@@ -83,6 +83,7 @@ const Table<NumericsSpec>& numerics_keys() {
   using coupling::DragStep;
   using coupling::LockingCure;
   using coupling::PointPressure;
+  using coupling::PressureMethod;
   using coupling::StressOrder;
   using coupling::Transfer;
   static const Table<NumericsSpec> table = [] {
@@ -94,10 +95,12 @@ const Table<NumericsSpec>& numerics_keys() {
     t.add("transfer",
           choice<Transfer>({{"flip", Transfer::flip}, {"apic", Transfer::apic}, {"tpic", Transfer::tpic}}),
           &NumericsSpec::transfer, "Velocity between particles and grid: FLIP/PIC blend, affine, or Taylor.");
-    t.add("flip", number(dimension::kNone, {.min = 0, .max = 1}), &NumericsSpec::flip,
-          "Share of FLIP in the blend; the rest is PIC. With formulations higo, u-p and v-w that of a step "
-          "of the skeleton, "
-          "spread over the shorter ones that the water asks for.")
+    t.add(
+         "flip", number(dimension::kNone, {.min = 0, .max = 1}), &NumericsSpec::flip,
+         "Share of FLIP in the blend; the rest is PIC. Where the pressure is explicit (formulations higo, "
+         "u-p, v-w; "
+         "pressure compressible) that of a step of the skeleton, spread over the shorter ones that the water "
+         "asks for.")
         .only_with("transfer", "transfer = \"flip\"",
                    [](const NumericsSpec& n) { return n.transfer == Transfer::flip; });
     t.add("locking",
@@ -116,6 +119,12 @@ const Table<NumericsSpec>& numerics_keys() {
           "Share of FLIP in that blend.")
         .only_with("water_transfer", "water_transfer = \"flip\"",
                    [](const NumericsSpec& n) { return n.water_transfer == Transfer::flip; });
+    t.add("pressure",
+          choice<PressureMethod>(
+              {{"projected", PressureMethod::projected}, {"compressible", PressureMethod::compressible}}),
+          &NumericsSpec::pressure,
+          "Pore pressure in formulations with particles of water that keep its inertia: solved for in each "
+          "step, or explicitly from the bulk modulus of the water, which limits the step.");
     t.add("drag_step",
           choice<DragStep>({{"implicit", DragStep::implicit}, {"explicit", DragStep::by_last_velocities}}),
           &NumericsSpec::drag,
@@ -137,11 +146,12 @@ const Table<NumericsSpec>& numerics_keys() {
           "Fixed time step; without it the step is chosen from the limits.");
     t.add("courant", number(dimension::kNone, {.min = 0, .max = 1.5, .min_open = true}),
           &NumericsSpec::courant,
-          "Time step as a share of cell over drained wave speed, with formulations higo, u-p and v-w of what "
-          "the "
-          "water allows, which is far less; the stable limit, 1.7 or more for musl, is what explain prints. "
-          "Damped stages take 1 at most, because damping shortens it; formulations with particles of water "
-          "0.5.")
+          "Time step as a share of cell over drained wave speed, where the pressure is explicit "
+          "(formulations higo, "
+          "u-p, v-w; pressure compressible) of what the water allows, which is far less; the stable limit, "
+          "1.7 or "
+          "more for musl, is what explain prints. Damped stages take 1 at most, because damping shortens it; "
+          "formulations with particles of water 0.5.")
         .only_with("time_step", "time_step absent", [](const NumericsSpec& n) { return !n.time_step; });
     t.add("rhie_chow", number(dimension::kNone, {.min = 0, .max = 1}), &NumericsSpec::rhie_chow,
           "Coefficient of the term that damps checkerboard patterns of the pore pressure.");

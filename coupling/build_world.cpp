@@ -275,7 +275,7 @@ std::unique_ptr<World<D>> build_world(const Scene& scene) {
       world->pore_water->unsaturated->field.set_averages(scene.numerics.cell_means);
     }
     world->pore_water->pressure.set_tolerance(scene.numerics.solver_tolerance);
-    world->pore_water->compressible = formulation->pressure == PressureMethod::compressible;
+    world->pore_water->compressible = scene.compressible();
     if (scene.layered()) add_water_layer(*world);
     set_saturation(*world);
     if (scene.on_points()) add_point_water(*world);

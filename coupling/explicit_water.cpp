@@ -16,6 +16,12 @@ namespace {
 // the change within a step counts up to twice (docs/theory/higo.md); mapped once more (MUSL) at most once.
 constexpr double kUslFactor = 2;
 
+// Water on points of its own is not mapped once more.
+template <int D>
+double inertia_factor(const World<D>& world) {
+  return world.skeleton.options().musl && !world.pore_water->layer ? 1 : kUslFactor;
+}
+
 // 1 / rho of the mixture in the cells, times that factor.
 template <int D>
 void find_specific_volume(World<D>& world) {
@@ -24,7 +30,16 @@ void find_specific_volume(World<D>& world) {
   double grains = std::numeric_limits<double>::infinity();
   for (const Material& m : world.scene.materials)
     if (m.porosity > 0) grains = std::min(grains, m.density_solid);
-  const double factor = world.skeleton.options().musl ? 1 : kUslFactor;
+  const double factor = inertia_factor(world);
+  if (w.layer) {  // both phases by themselves: an upper bound of what drag leaves
+    const double water = 1 / world.scene.water.density;
+    w.specific_volume.resize(w.fill.size());
+    parallel_for(static_cast<int>(w.fill.size()), [&](int i) {
+      const double n = w.porosity[i];
+      w.specific_volume[i] = factor * (std::isinf(grains) ? water : (1 - n) / grains + n * water);
+    });
+    return;
+  }
   w.specific_volume.resize(w.fill.size());
   parallel_for(static_cast<int>(w.fill.size()), [&](int i) {
     const double* s = &w.cell_sums[static_cast<std::size_t>(i) * 4];
@@ -68,6 +83,22 @@ void advance_water(World<D>& world, double dt, const Reals& strain_velocity) {
 }
 
 template <int D>
+void advance_mixture(World<D>& world, double dt) {
+  PoreWater<D>& w = *world.pore_water;
+  WaterLayer<D>& layer = *w.layer;
+  fdm::PressureStep p = saturated_step(world, dt);
+  p.divergence = layer.divergence;
+  p.face_mobility = layer.face_mobility;
+  p.pressure_gradient = w.node_gradient;
+  layer.specific_volume = layer.face_mobility;
+  const double factor = inertia_factor(world) / dt;
+  for (double& v : layer.specific_volume) v *= factor;
+  w.explicit_limit = w.pressure.explicit_limit_of_faces(p, layer.specific_volume);
+  w.pressure.advance(p);
+  w.storage += dt * w.pressure.balance().storage;
+}
+
+template <int D>
 const fdm::ExplicitLimit& explicit_limit(World<D>& world, double time) {
   PoreWater<D>& w = *world.pore_water;
   if (w.explicit_limit.dt > 0) return w.explicit_limit;
@@ -82,7 +113,10 @@ const fdm::ExplicitLimit& explicit_limit(World<D>& world, double time) {
 template <int D>
 void blend_for_step(World<D>& world, double dt, double skeleton_step) {
   const double pic = 1 - world.scene.numerics.flip;
-  world.skeleton.set_flip(1 - pic * std::min(1.0, dt / skeleton_step));
+  const double share = std::min(1.0, dt / skeleton_step);
+  world.skeleton.set_flip(1 - pic * share);
+  if (world.pore_water->layer)
+    world.pore_water->layer->fluid.set_flip(1 - (1 - world.scene.numerics.water_flip) * share);
 }
 
 MotionLimit combined_limit(const fdm::ExplicitLimit& water, double cell, double wave_speed) {
@@ -96,6 +130,7 @@ MotionLimit combined_limit(const fdm::ExplicitLimit& water, double cell, double 
 #define POLDER_INSTANTIATE(D)                                      \
   template void blend_for_step<D>(World<D>&, double, double);      \
   template void advance_water<D>(World<D>&, double, const Reals&); \
+  template void advance_mixture<D>(World<D>&, double);             \
   template const fdm::ExplicitLimit& explicit_limit<D>(World<D>&, double);
 POLDER_INSTANTIATE(2)
 POLDER_INSTANTIATE(3)

@@ -12,6 +12,15 @@ namespace polder::coupling {
 template <int D>
 void advance_water(World<D>& world, double dt, const Reals& strain_velocity);
 
+// The same where water has points of its own: pressure from the flow of the mixture, WaterLayer::divergence,
+// whose velocities are final. With M the masses and B the drag of grains and water the wave in the mixture is
+// stable while
+//   (dt/h)^2 (K_w / n) m^T [M + (dt/2) C]^-1 m < 1,  m = (1 - n, n),  C = B {{1, -1}, {-1, 1}},
+// drag being implicit. The mobility of the faces over the step is dt m^T [M + dt C]^-1 m: taken as it is it
+// gives the limit where the step is half of it, and less where the step is shorter.
+template <int D>
+void advance_mixture(World<D>& world, double dt);
+
 // Longest stable step of the water [s]: that of the last step, or found now, at this time [s], where the last
 // step was none of advance_water's.
 template <int D>

@@ -68,6 +68,7 @@ struct WaterLayer {
   // Nodes (slots * 4): velocities with drag exchanged and their responses to a unit pressure gradient.
   Reals grains, water, grains_response, water_response;
   Reals divergence, face_mobility;  // of cells and faces, see fdm/mixture_flow.hpp
+  Reals specific_volume;            // of faces, where pressure is explicit: mobility over the step [m3/kg]
   Reals displacement;               // of the nodes, that takes the drift out of the volumes [m]
   std::vector<Reals> fluidised;     // bodies, by the number of the point: 1 where it is (fluidisation.hpp)
   fdm::Discharge discharge;

@@ -56,6 +56,13 @@ bool Scene::layered() const {
   return f != nullptr && f->carrier == WaterCarrier::particles;
 }
 
+bool Scene::compressible() const {
+  const Formulation* f = find_formulation(formulation);
+  if (f == nullptr || f->carrier == WaterCarrier::none) return false;
+  return f->pressure == PressureMethod::compressible ||
+         (f->chooses_pressure() && numerics.pressure == PressureMethod::compressible);
+}
+
 bool Scene::fluidises() const {
   return std::any_of(materials.begin(), materials.end(),
                      [](const Material& m) { return m.fluidisation_porosity > 0; });

@@ -45,6 +45,10 @@ struct Formulation {
   SaturationKind saturation = SaturationKind::saturated;
   bool available = false;  // built into this version
   std::string source;      // author, year
+  // `pressure` is that of the preset unless NumericsSpec::pressure says otherwise.
+  bool chooses_pressure() const {
+    return carrier == WaterCarrier::particles && inertia == RelativeInertia::kept;
+  }
   bool operator==(const Formulation&) const = default;
 };
 
@@ -87,6 +91,8 @@ struct NumericsSpec {
   Transfer water_transfer = Transfer::flip;
   double water_flip = 0.99;
   LockingCure locking = LockingCure::automatic;
+  // Of formulations whose water has points of its own and keeps its relative inertia; others have one way.
+  PressureMethod pressure = PressureMethod::projected;
   DragStep drag = DragStep::implicit;  // where points carry soil and water with velocities of their own
   PointPressure point_pressure = PointPressure::cell_mean;  // where it is at the points
   bool smooth_rates = false;        // the change of volume that it follows is smoothed over the nodes
@@ -381,6 +387,7 @@ struct Scene {
   // Some material has a retention curve: water in cells is computed as unsaturated flow.
   bool unsaturated() const;
   bool layered() const;            // water has points of its own
+  bool compressible() const;       // pressure follows from the compression of the water
   bool fluidises() const;          // some material may lose contact between its grains
   bool drag_follows_flow() const;  // some drag law depends on more than the soil
   bool on_points() const;          // water is on the skeleton's points, with its pressure

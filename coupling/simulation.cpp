@@ -447,7 +447,7 @@ double Simulation::automatic_step(int stage) const {
 StepLimit Simulation::step_limit() const {
   if (!run_->limit) {
     const Scene& scene = run_->scene;
-    if (scene.layered()) {
+    if (scene.layered() && !scene.compressible()) {
       run_->limit = StepLimit{
           run_->automatic_step(0) / std::min(scene.numerics.courant, kLayeredCourant) * kLayeredCourant,
           "two layers, " + fdm::number(kLayeredCourant) + " of cell over " +
@@ -467,7 +467,7 @@ double Simulation::step_beyond_limit() const {
   const Scene& s = run_->scene;
   const double limit = step_limit().dt;
   if (s.numerics.time_step) return *s.numerics.time_step > limit ? *s.numerics.time_step : 0;
-  const bool compressible = find_formulation(s.formulation)->pressure == PressureMethod::compressible;
+  const bool compressible = s.compressible();
   if (compressible && s.unsaturated()) return s.numerics.courant > 1 ? s.numerics.courant * limit : 0;
   for (std::size_t i = 0; i < s.stages.size(); ++i) {
     const Stage& stage = s.stages[i];
@@ -555,7 +555,7 @@ std::vector<std::string> Simulation::skipped() const {
                   (scene.unsaturated() ? "porous" : "saturated") + " soil: not in the system");
     if (std::none_of(scene.stages.begin(), scene.stages.end(), [](const Stage& t) { return t.moves(); }))
       s.push_back("motion: no stage has any, so nothing is transferred between points and nodes");
-    if (find_formulation(scene.formulation)->pressure == PressureMethod::compressible)
+    if (scene.compressible())
       s.push_back(
           "linear systems: pressure is explicit where soil moves; solver_tolerance counts in stages of "
           "seepage "

@@ -6,6 +6,7 @@
 
 #include "core/threads.hpp"
 #include "coupling/drag_exchange.hpp"
+#include "coupling/explicit_water.hpp"
 #include "coupling/fluidisation.hpp"
 #include "coupling/initial_state.hpp"
 #include "coupling/point_water.hpp"
@@ -73,9 +74,6 @@ template <int D>
 void solve_pressure(World<D>& world, double dt) {
   PoreWater<D>& w = *world.pore_water;
   WaterLayer<D>& layer = *w.layer;
-  const fdm::MixtureMotion motion = motion_of(w, layer.grains, layer.water);
-  fdm::mixture_divergence(w.cells, motion, layer.divergence);
-  fdm::mixture_mobility(w.cells, motion, layer.face_mobility);
   fdm::PressureStep p;
   p.dt = dt;
   p.divergence = layer.divergence;
@@ -126,6 +124,15 @@ void correct(World<D>& world, double end, double dt) {
   world.skeleton.correct(end, dt, w.correction);
   if (!layer.relative_inertia) follow_grains(world, end, dt);
   layer.fluid.constrain(end, dt, layer.fluid.velocity());
+}
+
+// The velocities with drag exchanged are those of the step.
+template <int D>
+void take_over(World<D>& world, double end, double dt) {
+  WaterLayer<D>& layer = *world.pore_water->layer;
+  std::swap(layer.fluid.velocity(), layer.water);
+  layer.fluid.constrain(end, dt, layer.fluid.velocity());
+  world.pore_water->correction.clear();
 }
 
 template <int D>
@@ -284,11 +291,21 @@ mpm::MoveResult step_two_layer(World<D>& world, const StepInput& in, long step) 
   {
     Stopwatch watch(w.wall_seconds);
     complete_velocities(world, skeleton.strain_velocity(end, in.dt));
-    solve_pressure(world, in.dt);
-    w.pressure.node_gradient(w.pressure.increment(), fdm::BoundaryValues::homogeneous,
-                             fdm::WallNormal::inward, w.node_gradient);
+    const fdm::MixtureMotion motion = motion_of(w, layer.grains, layer.water);
+    fdm::mixture_divergence(w.cells, motion, layer.divergence);
+    fdm::mixture_mobility(w.cells, motion, layer.face_mobility);
+    if (w.compressible) {
+      advance_mixture(world, in.dt);
+    } else {
+      solve_pressure(world, in.dt);
+      w.pressure.node_gradient(w.pressure.increment(), fdm::BoundaryValues::homogeneous,
+                               fdm::WallNormal::inward, w.node_gradient);
+    }
   }
-  correct(world, end, in.dt);
+  if (w.compressible)
+    take_over(world, end, in.dt);
+  else
+    correct(world, end, in.dt);
   measure_discharge(world);
 
   mpm::MoveResult moved = skeleton.gather(in.time, in.dt);

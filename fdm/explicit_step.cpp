@@ -44,6 +44,21 @@ void find_inertia(const WaterCells<D>& cells, std::span<const double> specific_v
         specific_volume[list[boundary[b].cell].slot] * boundary[b].area / boundary[b].distance;
 }
 
+// The same from that of the faces.
+template <int D>
+void find_face_inertia(const WaterCells<D>& cells, std::span<const double> specific_volume, Reals& inertia) {
+  const auto interior = cells.interior_faces();
+  const auto boundary = cells.boundary_faces();
+  if (specific_volume.size() < interior.size() + boundary.size())
+    throw std::logic_error("explicit pressure: the specific volumes do not cover the faces");
+  inertia.resize(interior.size() + boundary.size());
+  for (std::size_t i = 0; i < interior.size(); ++i)
+    inertia[i] = specific_volume[i] * interior[i].area / cells.grid().spacing();
+  for (std::size_t b = 0; b < boundary.size(); ++b)
+    inertia[interior.size() + b] =
+        specific_volume[interior.size() + b] * boundary[b].area / boundary[b].distance;
+}
+
 void require_compressible(double bulk_modulus) {
   if (!std::isfinite(bulk_modulus))
     throw InputError("water: an explicit step of the pore pressure needs a finite bulk modulus");
@@ -56,14 +71,27 @@ void require_compressible(double bulk_modulus) {
 template <int D>
 ExplicitLimit PressureField<D>::explicit_limit(const PressureStep& step,
                                                std::span<const double> specific_volume) {
-  require_compressible(water_.bulk_modulus);
   require_current(std::min({step.porosity.size(), step.darcy_mobility.size(), specific_volume.size()}));
+  find_inertia(cells_, specific_volume, limit_inertia_);
+  return limit_of_inertia(step);
+}
+
+template <int D>
+ExplicitLimit PressureField<D>::explicit_limit_of_faces(const PressureStep& step,
+                                                        std::span<const double> specific_volume) {
+  require_current(std::min(step.porosity.size(), step.darcy_mobility.size()));
+  find_face_inertia(cells_, specific_volume, limit_inertia_);
+  return limit_of_inertia(step);
+}
+
+template <int D>
+ExplicitLimit PressureField<D>::limit_of_inertia(const PressureStep& step) {
+  require_compressible(water_.bulk_modulus);
   const auto cells = cells_.cells();
   const auto interior = cells_.interior_faces();
   const auto boundary = cells_.boundary_faces();
   const int n_interior = static_cast<int>(interior.size());
   const double per_spacing = 1 / cells_.grid().spacing();
-  find_inertia(cells_, specific_volume, limit_inertia_);
   limit_darcy_.resize(interior.size() + boundary.size());
   limit_storage_.resize(cells.size());
   for_each(n_interior, [&](int i) {
@@ -86,14 +114,18 @@ ExplicitLimit PressureField<D>::explicit_limit(const PressureStep& step,
 template <int D>
 void PressureField<D>::advance(const PressureStep& step) {
   require_compressible(water_.bulk_modulus);
-  require_current(std::min({p_.size(), step.velocity.size() / kStride, step.mobility.size(),
-                            step.porosity.size(), step.darcy_mobility.size()}));
+  require_current(std::min({p_.size(), step.porosity.size(), step.darcy_mobility.size()}));
+  const bool mixture = !step.divergence.empty();
+  if (mixture)
+    require_mixture(step);
+  else
+    require_current(std::min(step.velocity.size() / kStride, step.mobility.size()));
   if (!(step.dt > 0)) throw std::logic_error("PressureField: the time step must be positive");
   const auto cells = cells_.cells();
   const auto boundary = cells_.boundary_faces();
   face_terms(step, true);
   for_each(cells_.count(), [&](int c) {
-    divergence_[c] = cell_outflow<D>(cells[c], step.velocity);
+    divergence_[c] = mixture ? step.divergence[c] : cell_outflow<D>(cells[c], step.velocity);
     storage_[c] = step.porosity[cells[c].slot] / water_.bulk_modulus * cells[c].volume / step.dt;
   });
   net_inflow<D>(cells_, divergence_, flow_, rhs_);
@@ -229,6 +261,9 @@ ExplicitLimit UnsaturatedField<D>::advance_explicitly(const UnsaturatedStep& ste
 
 #define POLDER_INSTANTIATE(D)                                                                            \
   template ExplicitLimit PressureField<D>::explicit_limit(const PressureStep&, std::span<const double>); \
+  template ExplicitLimit PressureField<D>::explicit_limit_of_faces(const PressureStep&,                  \
+                                                                   std::span<const double>);             \
+  template ExplicitLimit PressureField<D>::limit_of_inertia(const PressureStep&);                        \
   template void PressureField<D>::advance(const PressureStep&);                                          \
   template ExplicitLimit UnsaturatedField<D>::explicit_limit(const UnsaturatedStep&,                     \
                                                              std::span<const double>);                   \

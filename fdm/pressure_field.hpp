@@ -121,6 +121,9 @@ class PressureField {
   // Longest stable step of advance() with these properties of the cells. specific_volume: of the mixture, 1 /
   // rho [m3/kg].
   ExplicitLimit explicit_limit(const PressureStep& step, std::span<const double> specific_volume);
+  // The same with that of the faces, interior ones first, where the water has a velocity of its own: the
+  // acceleration of the mixture's volume flow by a unit pressure gradient.
+  ExplicitLimit explicit_limit_of_faces(const PressureStep& step, std::span<const double> specific_volume);
 
   // Steady Darcy flow through a resting skeleton under the present conditions; sets the pressure. A basin
   // without any prescribed pressure gets the pressure zero in its first cell.
@@ -156,6 +159,7 @@ class PressureField {
   void fill_new_cells();
   void require_current(std::size_t slots) const;
   void require_mixture(const PressureStep& step) const;
+  ExplicitLimit limit_of_inertia(const PressureStep& step);
 
   const WaterCells<D>& cells_;
   WaterProperties<D> water_;

@@ -40,6 +40,7 @@ class FluidLayer {
   void scatter();
   // Volume of the fluid in cells by the overlap of the points' domains, {V, V, -, -} [slots * 4].
   void scatter_cells(Reals& cells) { mpm::scatter_cells(transfer_, cells); }
+  void set_flip(double flip) { flip_ = flip; }
   void constrain(double time, double dt, Reals& velocity);
   // Throws NumericalError where a point runs away.
   MoveResult gather(double time, double dt);

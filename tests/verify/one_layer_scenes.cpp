@@ -32,6 +32,7 @@ Scene wet_scene(const Choice& c, double width, double height, double duration) {
   s.numerics.courant = c.courant;
   s.numerics.locking = c.locking;
   s.numerics.rhie_chow = c.rhie_chow;
+  s.numerics.pressure = c.pressure;
   s.numerics.drag = c.drag;
   s.numerics.point_pressure = c.point_pressure;
   s.numerics.smooth_rates = c.smooth_rates;

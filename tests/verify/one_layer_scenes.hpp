@@ -29,6 +29,7 @@ struct Choice {
   int per_axis = 2;             // particles in a cell along each axis
   double rhie_chow = 0.05;      // chi
   coupling::LockingCure locking = coupling::LockingCure::automatic;
+  coupling::PressureMethod pressure = coupling::PressureMethod::projected;  // of water with its own points
   // Water on the soil's points.
   coupling::DragStep drag = coupling::DragStep::implicit;
   coupling::PointPressure point_pressure = coupling::PointPressure::cell_mean;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/verify/one_layer_consolidation.hpp"
+#include "tests/verify/one_layer_limit.hpp"
 #include "tests/verify/one_layer_rest.hpp"
 #include "tests/verify/report.hpp"
 #include "tests/verify/two_layer_scenes.hpp"
@@ -18,6 +19,7 @@ using namespace polder::verify;
 namespace {
 
 constexpr const char* kLayered[] = {"two-layer", "two-layer-darcy"};
+constexpr auto kCompressible = coupling::PressureMethod::compressible;
 constexpr const char* kFormulations[] = {"one-layer", "two-layer", "two-layer-darcy"};
 
 void terzaghi_table() {
@@ -34,22 +36,29 @@ void terzaghi_table() {
                     r.pressure_error[1], r.pressure_error[2], r.settlement_ratio, r.steps);
         std::fflush(stdout);
       }
+  for (const double k : {1e-3, 1e-4}) {
+    const Consolidation r = terzaghi(
+        {.formulation = "two-layer", .conductivity = k, .pressure = kCompressible}, {0.05, 0.2, 0.5}, 100);
+    std::printf("| two-layer, compressible | %g | 0 | %.4f | %.4f | %.4f | %.4f | %ld |\n", k,
+                r.pressure_error[0], r.pressure_error[1], r.pressure_error[2], r.settlement_ratio, r.steps);
+  }
 }
 
 void rest_table() {
   std::printf(
       "| formulation | scene | pressure, RMS | largest | speed [m/s] | drift |\n|---|---|---|---|---|---|\n");
-  for (const char* f : kLayered) {
-    const auto row = [&](const char* name, const WaterRest& r) {
-      std::printf("| %s | %s | %.1e | %.1e | %.1e | %.1e |\n", f, name, r.pressure_error, r.pressure_largest,
-                  r.speed, r.drift);
+  const auto rows = [](const char* name, const Choice& c) {
+    const auto row = [&](const char* scene, const WaterRest& r) {
+      std::printf("| %s | %s | %.1e | %.1e | %.1e | %.1e |\n", name, scene, r.pressure_error,
+                  r.pressure_largest, r.speed, r.drift);
     };
-    const Choice c{.formulation = f};
     row("soil, jitter 0.5, 1 s", jittered_column(c, 0.5, 1));
     row("soil, jitter 0.5, 3 s", jittered_column(c, 0.5, 3));
     row("pond over soil, 2 s", pond_over_soil(c, 0, 2));
     row("pond over soil, jitter 0.5, 2 s", pond_over_soil(c, 0.5, 2));
-  }
+  };
+  for (const char* f : kLayered) rows(f, {.formulation = f});
+  rows("two-layer, compressible", {.formulation = "two-layer", .pressure = kCompressible});
 }
 
 void hydrostatic_table() {
@@ -225,21 +234,47 @@ void waves_table() {
     ColumnEquations equations;
     int cells;
     double courant;
+    bool compressible = false;
   };
   using enum ColumnEquations;
   for (const Run& run : {Run{"two-layer", uw, 40, 0.1}, Run{"two-layer", uw, 80, 0.2},
                          Run{"two-layer", uw, 80, 0.1}, Run{"two-layer", uw, 160, 0.1},
+                         Run{"two-layer", uw, 80, 0.5, true}, Run{"two-layer", uw, 160, 0.5, true},
                          Run{"two-layer-darcy", uw, 160, 0.1}, Run{"two-layer-darcy", up, 80, 0.1},
                          Run{"two-layer-darcy", up, 160, 0.1}, Run{"one-layer", uw, 160, 0.1}}) {
-    const TwoWaves r = two_waves(
-        {.formulation = run.formulation, .cell = 1.0 / run.cells, .courant = run.courant}, run.equations);
+    Choice c{.formulation = run.formulation, .cell = 1.0 / run.cells, .courant = run.courant};
+    if (run.compressible) c.pressure = kCompressible;
+    const TwoWaves r = two_waves(c, run.equations);
     // In u-p no second wave passes.
     const double none = run.equations == up ? std::nan("") : 1.0;
-    std::printf("| %s | %s | 1/%d | %g | %.3f | %.3f | %.3f | %.3f | %.3f | %.3f | %ld |\n", run.formulation,
+    std::printf("| %s%s | %s | 1/%d | %g | %.3f | %.3f | %.3f | %.3f | %.3f | %.3f | %ld |\n",
+                run.formulation, run.compressible ? ", compressible" : "",
                 run.equations == uw ? "u-w" : "u-p", run.cells, run.courant, r.pressure, r.stress, r.grains,
                 r.water, none * r.speed, none * r.amplitude, r.steps);
     std::fflush(stdout);
   }
+}
+
+void limit_table() {
+  std::printf(
+      "| order | K_w [Pa] | k [m/s] | analysis [s] | measured over it | step at courant 1 over it "
+      "|\n|---|---|---|---|---|---|\n");
+  for (const bool musl : {true, false})
+    for (const double stiffness : {2.2e8, 2.2e9})
+      for (const double k : {1e-6, 1e-4, 1e-3, 1e-2, 1.0}) {
+        const Block b{{12, 8},
+                      {.formulation = "two-layer",
+                       .musl = musl,
+                       .conductivity = k,
+                       .bulk_modulus = stiffness,
+                       .pressure = kCompressible}};
+        const double analysed = analysed_mixture_limit(b.choice, 0.4, 2650);
+        // Halfway between the two steps of which one grows; steps of two layers are half of the limit at
+        // most.
+        std::printf("| %s | %g | %g | %.2e | %.3f | %.3f |\n", musl ? "MUSL" : "USL", stiffness, k, analysed,
+                    first_unstable_step(b) / 1.01 / analysed, 2 * wave_step(b) / analysed);
+        std::fflush(stdout);
+      }
 }
 
 void cost_table() {
@@ -260,6 +295,6 @@ int main(int count, char** names) {
       {"falling", falling_table},   {"upward", upward_table},     {"level", level_table},
       {"slump", slump_table},       {"drag", drag_table},         {"dam", dam_table},
       {"ritter", ritter_table},     {"sloshing", sloshing_table}, {"harmonic", harmonic_table},
-      {"waves", waves_table},       {"cost", cost_table}};
+      {"waves", waves_table},       {"limit", limit_table},       {"cost", cost_table}};
   return print_tables("two_layer_report", tables, count, names);
 }

@@ -27,6 +27,12 @@ const std::pair<std::string, Scene> kScenes[] = {
      open_sides_scene({.formulation = "two-layer", .courant = 0.5, .conductivity = 1e-2}, 0.5)},
     {"10 x 9 cells, Darcy",
      open_sides_scene({.formulation = "two-layer-darcy", .courant = 0.5, .conductivity = 1e-2}, 0.5)},
+    {"10 x 9 cells, explicit pressure", open_sides_scene({.formulation = "two-layer",
+                                                          .courant = 0.5,
+                                                          .conductivity = 1e-2,
+                                                          .bulk_modulus = 1e6,
+                                                          .pressure = coupling::PressureMethod::compressible},
+                                                         0.5)},
     {"30 x 27 cells, affine water",
      affine(open_sides_scene(
          {.formulation = "two-layer", .cell = 1.0 / 30, .courant = 0.5, .conductivity = 1e-2}, 0.15))}};

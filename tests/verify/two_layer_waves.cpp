@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -103,6 +104,30 @@ double Harmonic::error(ColumnEquations equations, const HarmonicGroups& groups) 
     largest = std::max(largest, std::abs(exact));
   }
   return difference / largest;
+}
+
+double analysed_mixture_limit(const Choice& c, double n, double density_solid) {
+  const double modulus = elastic_soil(1e7, 0.2, n, c.conductivity).wave_modulus(), q = c.bulk_modulus / n;
+  const double grains = (1 - n) * density_solid, water = n * kDensityWater;
+  const double beta = n * n * kUnitWeight / c.conductivity;
+  // The determinant of 4 M + 2 (2 - s) dt C - dt^2 K D for a = sin^2(theta / 2), D = diag(s or 2 - s, 2 - s).
+  const auto stable = [&](double dt, double a) {
+    const double s = 1 - 0.75 * a, d = 2 - s, of_grains = c.musl ? s : d;
+    const double x = 4 * a * dt * dt / (c.cell * c.cell), drag = 2 * d * dt * beta;
+    const double k00 = modulus + (1 - n) * (1 - n) * q, k01 = n * (1 - n) * q, k11 = n * n * q;
+    return (4 * grains + drag - x * k00 * of_grains) * (4 * water + drag - x * k11 * d) >
+           (drag + x * k01 * d) * (drag + x * k01 * of_grains);
+  };
+  constexpr int kModes = 50;
+  constexpr double kRatio = 1.002;
+  const double shortest = 0.3 * c.cell * std::sqrt(kDensityWater / (modulus + q));
+  double limit = std::numeric_limits<double>::infinity();
+  for (int i = 1; i <= kModes; ++i) {
+    double dt = shortest;
+    while (dt < limit && stable(dt, i / static_cast<double>(kModes))) dt *= kRatio;
+    limit = std::min(limit, dt);
+  }
+  return limit;
 }
 
 Harmonic harmonic_column(const Choice& choice, const HarmonicGroups& g, int steps, int periods) {

@@ -11,6 +11,11 @@
 
 namespace polder::verify {
 
+// Largest stable step of a plane wave in water of finite stiffness and the skeleton, pressure explicit, drag
+// implicit, in the order of the choice (docs/theory/two-layer.md), GIMP with two points a cell along each
+// axis [s].
+double analysed_mixture_limit(const Choice& choice, double porosity, double density_solid);
+
 // What a formulation keeps: all inertia (u-w), not that of water relative to the skeleton (u-p), none
 // (consolidation). darcy: u-p that also leaves the skeleton's acceleration out of Darcy's law.
 enum class ColumnEquations { uw, up, darcy, consolidation };
