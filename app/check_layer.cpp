@@ -89,6 +89,20 @@ void check_drag(Reader& reader) {
   }
 }
 
+// Where solids are grains and no skeleton, they must say when they touch.
+void check_grains(Reader& reader) {
+  const Scene& scene = reader.scene;
+  if (!scene.dispersed()) return;
+  for (const coupling::Material& m : scene.materials) {
+    const std::string key = "material." + m.name + ".fluidisation_porosity";
+    if (m.porosity > 0 && m.fluidisation_porosity == 0 && !reader.failed(key))
+      reader.error(
+          key, "solids of formulation \"" + scene.formulation + "\" are grains, which touch at some porosity",
+          "model = \"mohr-coulomb\" with a drag law of grains and a fluidisation_porosity; or "
+          "formulation = \"two-layer\"");
+  }
+}
+
 // Viscosity and sticking are for water with particles; what is inviscid cannot stick.
 void check_shear(Reader& reader) {
   const Scene& scene = reader.scene;
@@ -113,12 +127,11 @@ void check_shear(Reader& reader) {
 void check_water_layer(Reader& reader) {
   const Scene& scene = reader.scene;
   if (reader.failed("formulation")) return;
-  const coupling::Formulation* f = coupling::find_formulation(scene.formulation);
-  if (f && !f->chooses_pressure() && reader.given("numerics.pressure") && !reader.failed("numerics.pressure"))
+  if (scene.numerics.pressure == coupling::PressureMethod::compressible && !scene.compressible() &&
+      !reader.failed("numerics.pressure"))
     reader.error("numerics.pressure",
-                 "formulation \"" + scene.formulation + "\" has " +
-                     (f->carrier == coupling::WaterCarrier::none ? "none" : "one way to find it only"),
-                 "no pressure; or formulation = \"two-layer\"");
+                 "\"compressible\" is not in this version for formulation \"" + scene.formulation + "\"",
+                 "\"projected\"; or formulation = \"two-layer\"");
   check_drag(reader);
   check_shear(reader);
   if (!scene.layered()) {
@@ -128,6 +141,7 @@ void check_water_layer(Reader& reader) {
                    "formulation = \"two-layer\"");
     return;
   }
+  check_grains(reader);
   check_water_of_layer(reader);
   check_boundaries_of_layer(reader);
   check_stages_of_layer(reader);

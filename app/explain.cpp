@@ -41,7 +41,8 @@ void explain_layer(const Scene& scene, std::ostream& out) {
                                 {DragLaw::di_felice, "Di Felice"}})
         << ", implicit: it does not limit the step";
     if (m.fluidisation_porosity > 0)
-      out << "; no contact above porosity " << format_number(m.fluidisation_porosity);
+      out << "; no contact above porosity " << format_number(m.fluidisation_porosity)
+          << (scene.dispersed() ? "" : " once effective stress has vanished");
     out << '\n';
   }
   if (scene.water.viscous)

@@ -199,7 +199,9 @@ const Table<Material>& material_keys() {
     t.add("fluidisation_porosity", number(dimension::kNone, {.min = 0, .max = 1, .max_open = true}),
           &M::fluidisation_porosity,
           "Porosity above which grains that have lost their effective stress are out of contact, until it "
-          "falls to this value again; 0: never. Needs a drag law of grains.")
+          "falls to this value again; 0: never. Needs a drag law of grains. In formulation mixture grains "
+          "need not "
+          "have lost it.")
         .only_with("model", with_mohr_coulomb, mohr_coulomb);
     t.add("anisotropy", numbers(dimension::kNone, kPositive), &M::anisotropy,
           "Factors on the conductivity along the axes of the grid, e.g. [1, 0.1]; without it 1.");

@@ -13,6 +13,7 @@ template <int D>
 void fluidise(World<D>& world) {
   if (!world.scene.fluidises()) return;
   std::vector<Reals>& fluid = world.pore_water->layer->fluidised;
+  const bool dispersed = world.scene.dispersed();
   const auto& bodies = world.skeleton.bodies();
   fluid.resize(bodies.size());
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -29,7 +30,7 @@ void fluidise(World<D>& world) {
       const double compression = -(set.stress[0][p] + set.stress[1][p] + set.stress[2][p]) / 3;
       if (porosity <= threshold)
         loose = 0;
-      else if (compression <= least)
+      else if (dispersed || compression <= least)
         loose = 1;
       if (loose == 0) return;
       for (Reals& s : set.stress) s[p] = 0;

@@ -4,8 +4,9 @@
 // effective stress has vanished: less than kVanished of Young's modulus is left of the mean compression. From
 // then on its stress is zero, and only drag (coupling/drag_law.hpp, which such a material has from its
 // grains) and pressure move it. When its porosity has fallen to n_f again it has settled, and the material's
-// law takes up from no stress. Porosity is that of the point, from its mass and tracked volume; which points
-// are fluid is part of the state.
+// law takes up from no stress. Grains dispersed in water (formulation mixture; Mackenzie-Helnwein et al.
+// 2010, Shin 2010) are no skeleton that could keep a stress: there the porosity alone decides. Porosity is
+// that of the point, from its mass and tracked volume; which points are fluid is part of the state.
 #pragma once
 
 #include "coupling/world.hpp"

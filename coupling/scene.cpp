@@ -33,8 +33,8 @@ const std::vector<Formulation>& formulations() {
       {"three-phase", C::skeleton, I::neglected, P::compressible, S::three_phase, false, "Yerro et al. 2015"},
       {"two-layer", C::particles, I::kept, P::projected, S::saturated, true, "Bandara & Soga 2015"},
       {"two-layer-darcy", C::particles, I::neglected, P::projected, S::saturated, true, "Abe et al. 2014"},
-      {"mixture", C::particles, I::kept, P::compressible, S::saturated, false,
-       "Mackenzie-Helnwein et al. 2010; Shin 2010"},
+      {"mixture", C::particles, I::kept, P::projected, S::saturated, true,
+       "Mackenzie-Helnwein et al. 2010; Shin 2010", true},
   };
   return table;
 }
@@ -61,6 +61,11 @@ bool Scene::compressible() const {
   if (f == nullptr || f->carrier == WaterCarrier::none) return false;
   return f->pressure == PressureMethod::compressible ||
          (f->chooses_pressure() && numerics.pressure == PressureMethod::compressible);
+}
+
+bool Scene::dispersed() const {
+  const Formulation* f = find_formulation(formulation);
+  return f != nullptr && f->dispersed;
 }
 
 bool Scene::fluidises() const {

@@ -45,6 +45,7 @@ struct Formulation {
   SaturationKind saturation = SaturationKind::saturated;
   bool available = false;  // built into this version
   std::string source;      // author, year
+  bool dispersed = false;  // solids are grains in the water that touch where they are dense, no skeleton
   // `pressure` is that of the preset unless NumericsSpec::pressure says otherwise.
   bool chooses_pressure() const {
     return carrier == WaterCarrier::particles && inertia == RelativeInertia::kept;
@@ -128,8 +129,8 @@ struct Material : mpm::MaterialParameters {
   DragLaw drag_law = DragLaw::darcy;
   double forchheimer = 0;     // b in i = q / k + b q^2 [s2/m2]
   double grain_diameter = 0;  // of drag laws that know grains [m]
-  // Porosity above which grains without effective stress have no contact, see fluidisation.hpp; 0: always
-  // some
+  // Porosity above which grains without effective stress (dispersed ones: any) have no contact, see
+  // fluidisation.hpp; 0: always some
   double fluidisation_porosity = 0;
   BishopFactor bishop = BishopFactor::effective_saturation;
   double capillary_suction = 0;  // suction at which the capillary cohesion is all there [Pa]
@@ -388,6 +389,7 @@ struct Scene {
   bool unsaturated() const;
   bool layered() const;            // water has points of its own
   bool compressible() const;       // pressure follows from the compression of the water
+  bool dispersed() const;          // grains, see Formulation
   bool fluidises() const;          // some material may lose contact between its grains
   bool drag_follows_flow() const;  // some drag law depends on more than the soil
   bool on_points() const;          // water is on the skeleton's points, with its pressure

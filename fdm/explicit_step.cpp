@@ -71,6 +71,7 @@ void require_compressible(double bulk_modulus) {
 template <int D>
 ExplicitLimit PressureField<D>::explicit_limit(const PressureStep& step,
                                                std::span<const double> specific_volume) {
+  require_compressible(water_.bulk_modulus);
   require_current(std::min({step.porosity.size(), step.darcy_mobility.size(), specific_volume.size()}));
   find_inertia(cells_, specific_volume, limit_inertia_);
   return limit_of_inertia(step);
@@ -79,6 +80,7 @@ ExplicitLimit PressureField<D>::explicit_limit(const PressureStep& step,
 template <int D>
 ExplicitLimit PressureField<D>::explicit_limit_of_faces(const PressureStep& step,
                                                         std::span<const double> specific_volume) {
+  require_compressible(water_.bulk_modulus);
   require_current(std::min(step.porosity.size(), step.darcy_mobility.size()));
   find_face_inertia(cells_, specific_volume, limit_inertia_);
   return limit_of_inertia(step);
@@ -86,7 +88,6 @@ ExplicitLimit PressureField<D>::explicit_limit_of_faces(const PressureStep& step
 
 template <int D>
 ExplicitLimit PressureField<D>::limit_of_inertia(const PressureStep& step) {
-  require_compressible(water_.bulk_modulus);
   const auto cells = cells_.cells();
   const auto interior = cells_.interior_faces();
   const auto boundary = cells_.boundary_faces();

@@ -12,6 +12,7 @@
 #include "tests/verify/report.hpp"
 #include "tests/verify/two_layer_scenes.hpp"
 #include "tests/verify/two_layer_waves.hpp"
+#include "tests/verify/water_lift.hpp"
 
 using namespace polder;
 using namespace polder::verify;
@@ -277,6 +278,17 @@ void limit_table() {
       }
 }
 
+void mixture_table() {
+  std::printf(
+      "| formulation | without contact, largest share | at the end | height at the end [m] | mean vertical "
+      "stress at the end over the weight under water |\n|---|---|---|---|---|\n");
+  for (const char* f : {"two-layer", "mixture"}) {
+    const Lifting r = lifting({.formulation = f}, loose_sand(0.4, 1e-3, 0.38), 0.1);
+    std::printf("| %s | %.2f | %.2f | %.4f | %.3f |\n", f, r.fluidised, r.settled_share, r.settled_height,
+                r.settled_compression / (0.5 * 0.6 * 1650 * kGravity));
+  }
+}
+
 void cost_table() {
   std::printf(
       "| h [m] | points, one / two | one-layer [ms] | two-layer [ms] | ratio |\n|---|---|---|---|---|\n");
@@ -295,6 +307,7 @@ int main(int count, char** names) {
       {"falling", falling_table},   {"upward", upward_table},     {"level", level_table},
       {"slump", slump_table},       {"drag", drag_table},         {"dam", dam_table},
       {"ritter", ritter_table},     {"sloshing", sloshing_table}, {"harmonic", harmonic_table},
-      {"waves", waves_table},       {"limit", limit_table},       {"cost", cost_table}};
+      {"waves", waves_table},       {"limit", limit_table},       {"mixture", mixture_table},
+      {"cost", cost_table}};
   return print_tables("two_layer_report", tables, count, names);
 }

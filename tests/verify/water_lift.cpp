@@ -59,7 +59,8 @@ Lifting lifting(const Choice& c, const coupling::Material& soil, double most) {
   }
   r.settled_share = column_of(sim, "fluidised[-]");
   r.settled_height = top_of(sim);
-  r.settled_stress = compression() / at_rest;
+  r.settled_compression = compression();
+  r.settled_stress = r.settled_compression / at_rest;
   r.solid_error = column_of(sim, "solid_mass_error[-]");
   r.water_error = column_of(sim, "water_mass_error[-]");
   r.steps = sim.steps();

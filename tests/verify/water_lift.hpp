@@ -17,10 +17,11 @@ struct Lifting {
   double fluidised = 0;      // largest share of the grains without contact [-]
   double height = 0;         // largest, of the soil [m]
   double settled_share = 0;  // of the grains without contact at the end [-]
-  double settled_height = 0;  // of the soil at the end [m]
-  double settled_stress = 0;  // mean vertical effective stress at the end over that at rest [-]
-  double solid_error = 0;     // of the mass of grains, relative
-  double water_error = 0;     // of the water, relative
+  double settled_height = 0;       // of the soil at the end [m]
+  double settled_stress = 0;       // mean vertical effective stress at the end over that at rest [-]
+  double settled_compression = 0;  // the same by itself, compression positive [Pa]
+  double solid_error = 0;          // of the mass of grains, relative
+  double water_error = 0;          // of the water, relative
   long steps = 0;
 };
 Lifting lifting(const Choice& choice, const coupling::Material& soil, double most);
