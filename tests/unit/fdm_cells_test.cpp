@@ -27,6 +27,19 @@ TEST_CASE("a column has one face between neighbours, walls without faces and a s
   CHECK(s.cells.boundary_faces()[0].distance == doctest::Approx(2.3499 - 1.75));
 }
 
+TEST_CASE("water that passes from a cell into the one above leaves the surface where it is") {
+  Scene<2> s({0, 0}, {1, 12}, 0.5);
+  s.cells.set_inclined_surfaces(true);
+  for (const double passed : {0.0, 0.05, 0.1, 0.2}) {
+    s.fill_cells([&](const auto& x) {
+      return x[1] < 2 ? 1.0 : x[1] < 2.5 ? 1 - passed : x[1] < 3 ? 0.4 + passed : 0.0;
+    });
+    s.cells.update(s.fill, s.conditions);
+    CHECK(s.cells.count() == 5);
+    CHECK(s.cells.boundary_faces()[0].distance == doctest::Approx(0.45).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("lists are rebuilt when mask, grid or boundary geometry change, and only then") {
   Scene<2> s({0, 0}, {16, 16}, 1.0);
   s.fill_below(5.75);
