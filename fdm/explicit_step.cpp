@@ -115,12 +115,7 @@ ExplicitLimit PressureField<D>::limit_of_inertia(const PressureStep& step) {
 template <int D>
 void PressureField<D>::advance(const PressureStep& step) {
   require_compressible(water_.bulk_modulus);
-  require_current(std::min({p_.size(), step.porosity.size(), step.darcy_mobility.size()}));
-  const bool mixture = !step.divergence.empty();
-  if (mixture)
-    require_mixture(step);
-  else
-    require_current(std::min(step.velocity.size() / kStride, step.mobility.size()));
+  const bool mixture = require_step(step);
   if (!(step.dt > 0)) throw std::logic_error("PressureField: the time step must be positive");
   const auto cells = cells_.cells();
   const auto boundary = cells_.boundary_faces();

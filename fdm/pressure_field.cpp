@@ -149,6 +149,17 @@ void PressureField<D>::require_mixture(const PressureStep& step) const {
     throw std::logic_error("PressureField: the mixture's flow does not cover the cells");
 }
 
+template <int D>
+bool PressureField<D>::require_step(const PressureStep& step) const {
+  require_current(std::min({p_.size(), step.porosity.size(), step.darcy_mobility.size()}));
+  const bool mixture = !step.divergence.empty();
+  if (mixture)
+    require_mixture(step);
+  else
+    require_current(std::min(step.velocity.size() / kStride, step.mobility.size()));
+  return mixture;
+}
+
 // ---- assembly
 // -------------------------------------------------------------------------------------------------------
 
@@ -291,12 +302,7 @@ SolveReport PressureField<D>::solve_increment() {
 template <int D>
 SolveReport PressureField<D>::solve(const PressureStep& step) {
   const std::size_t slots = cells_.grid().slots();
-  require_current(std::min({p_.size(), step.porosity.size(), step.darcy_mobility.size()}));
-  const bool mixture = !step.divergence.empty();
-  if (mixture)
-    require_mixture(step);
-  else
-    require_current(std::min(step.velocity.size() / kStride, step.mobility.size()));
+  const bool mixture = require_step(step);
   if (!step.pressure_gradient.empty() && step.pressure_gradient.size() < slots * kStride)
     throw std::logic_error("PressureField: the pressure gradient does not cover the grid");
   if (!step.skeleton_compressibility.empty() && step.skeleton_compressibility.size() < slots)

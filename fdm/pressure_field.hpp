@@ -159,6 +159,7 @@ class PressureField {
   void fill_new_cells();
   void require_current(std::size_t slots) const;
   void require_mixture(const PressureStep& step) const;
+  bool require_step(const PressureStep& step) const;  // whether its motion is that of a mixture
   ExplicitLimit limit_of_inertia(const PressureStep& step);
 
   const WaterCells<D>& cells_;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/threads.hpp"
 #include "coupling/memory_state.hpp"
 #include "coupling/simulation.hpp"
 
@@ -62,6 +63,20 @@ inline void check_cut_run(const coupling::Scene& scene, long at, const coupling:
   again.save(second);
   check_same_bits(again, end);
   CHECK(second.steps() == steps);
+}
+
+// Cut in the middle, and with one thread and four; array: one whose sum is not zero where the scene does what
+// it is meant to. Weights of points at nodes are found anew at the beginning of each step.
+inline void check_cut_and_threads(const coupling::Scene& scene, const std::string& array) {
+  set_threads(1);
+  const WholeRun whole = run_whole(scene);
+  double sum = 0;
+  for (const double x : whole.state.arrays.at(array)) sum += x;
+  CHECK(sum > 0);
+  check_cut_run(scene, whole.steps / 2, whole.state, whole.steps, "/nodal_weight");
+  set_threads(4);
+  check_same_bits(run_whole(scene).state, whole.state);
+  set_threads(1);
 }
 
 }  // namespace polder::verify

@@ -68,14 +68,5 @@ TEST_CASE("mixture: a suspension sinks as its drag law says") {
 }
 
 TEST_CASE("mixture: a run cut at any step goes on with the same bits, on any number of threads") {
-  const Scene scene = slope_of(mixture(), 0.51);
-  set_threads(1);
-  const WholeRun whole = run_whole(scene);
-  double loose = 0;
-  for (const double x : whole.state.arrays.at("fluidised_0")) loose += x;
-  CHECK(loose > 0);
-  check_cut_run(scene, whole.steps / 2, whole.state, whole.steps, "/nodal_weight");
-  set_threads(4);
-  check_same_bits(run_whole(scene).state, whole.state);
-  set_threads(1);
+  check_cut_and_threads(slope_of(mixture(), 0.51), "fluidised_0");
 }

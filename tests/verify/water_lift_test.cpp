@@ -65,13 +65,5 @@ TEST_CASE("settling: a suspension sinks as its drag law says") {
 TEST_CASE("fluidisation: a run cut at any step goes on with the same bits, on any number of threads") {
   Scene scene = open_sides_scene(layers(), 0.3);
   scene.materials[0] = loose_sand(0.6, 2e-3, 0.5);
-  set_threads(1);
-  const WholeRun whole = run_whole(scene);
-  double loose = 0;
-  for (const double x : whole.state.arrays.at("fluidised_0")) loose += x;
-  CHECK(loose > 0);
-  check_cut_run(scene, whole.steps / 2, whole.state, whole.steps, "/nodal_weight");
-  set_threads(4);
-  check_same_bits(run_whole(scene).state, whole.state);
-  set_threads(1);
+  check_cut_and_threads(scene, "fluidised_0");
 }

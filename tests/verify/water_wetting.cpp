@@ -11,6 +11,7 @@ using coupling::WaterBoundary;
 namespace {
 
 constexpr double kPorosity = 0.4, kDensitySolid = 2650, kDensityWater = 1000, kHeight = 1;
+constexpr double kHead = 1.5, kLine = 0.25;  // level outside, phreatic line at the start
 
 Scene soil_over(const Choice& c, double line, double retained, double duration, WaterBoundary base) {
   const double width = 4 * c.cell;
@@ -67,13 +68,17 @@ double stress_at(const Simulation& sim, double y) {
 
 }  // namespace
 
-Wetting rising_front(const Choice& c, double retained) {
-  constexpr double kHead = 1.5, kLine = 0.25, kAt = 0.55, kEnd = 0.9;
+Scene rising_front_scene(const Choice& c, double retained, double duration) {
   WaterBoundary base;
   base.kind = WaterBoundary::Kind::head;
   base.value.value = {kHead};
+  return soil_over(c, kLine, retained, duration, base);
+}
+
+Wetting rising_front(const Choice& c, double retained) {
+  constexpr double kAt = 0.55, kEnd = 0.9;
   const double end = rise_time(c, kHead, kLine, retained, kEnd), width = 4 * c.cell;
-  Simulation sim(soil_over(c, kLine, retained, end, base));
+  Simulation sim(rising_front_scene(c, retained, end));
   const double grains = (1 - kPorosity) * kDensitySolid * kGravity;
   const double kept = kPorosity * retained * kDensityWater * kGravity;
   // Error of the effective stress over the weight above.
@@ -105,7 +110,7 @@ Wetting rising_front(const Choice& c, double retained) {
 }
 
 Draining falling_front(const Choice& c, double retained) {
-  constexpr double kHead = 1.5, kLine = 0.25, kTurn = 0.85, kEnd = 0.45;
+  constexpr double kTurn = 0.85, kEnd = 0.45;
   // Rises as above, then drains: a free outlet takes i = 1.
   WaterBoundary base;
   base.kind = WaterBoundary::Kind::pressure;

@@ -18,6 +18,7 @@ struct Wetting {
   double front = 0;  // at the end [m]
 };
 Wetting rising_front(const Choice& choice, double retained);
+Scene rising_front_scene(const Choice& choice, double retained, double duration);
 
 // The same up to 0.85 m; then the base is free of pressure and the level falls by k t / (n (1 - S)), while
 // what the soil retained at the start stays.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/threads.hpp"
+#include "tests/verify/cut_run.hpp"
 #include "tests/verify/water_wetting.hpp"
 
 using namespace polder;
@@ -31,4 +32,13 @@ TEST_CASE("and leaves it again") {
     CHECK(r.level_error < 0.4);
     CHECK(std::abs(r.water_error) < 1e-12);
   }
+}
+
+TEST_CASE("retained water and points that were split: cut at any step, on any number of threads") {
+  const Scene scene = rising_front_scene({.formulation = "two-layer", .conductivity = 1e-2}, 0.8, 0.5);
+  check_cut_and_threads(scene, "body_0/retained_water");
+  Simulation run(scene);
+  const std::size_t first = run.water_points().count();
+  while (!run.finished()) run.step();
+  CHECK(run.water_points().count() > first + 8);
 }
