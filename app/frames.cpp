@@ -1,6 +1,7 @@
 #include "app/frames.hpp"
 
 #include <deque>
+#include <memory>
 
 #include "app/checkpoint_state.hpp"
 
@@ -15,8 +16,9 @@ bool is_label(const std::string& name) {
   return name == "id" || name == "body" || name == "material";
 }
 
-std::vector<FrameArray> arrays(const std::vector<FieldView>& fields,
-                               std::deque<std::vector<std::int32_t>>& labels) {
+using Labels = std::deque<std::vector<std::int32_t>>;
+
+std::vector<FrameArray> arrays(const std::vector<FieldView>& fields, Labels& labels) {
   std::vector<FrameArray> list;
   for (const FieldView& f : fields) {
     if (is_label(f.name)) {
@@ -27,6 +29,33 @@ std::vector<FrameArray> arrays(const std::vector<FieldView>& fields,
     }
   }
   return list;
+}
+
+// What the frames of one moment hold.
+struct Content {
+  double time = 0;  // [s]
+  coupling::PointFrame soil, water;
+  coupling::CellFrame fluid;
+};
+
+void write_points(FrameSeries& series, double time, const coupling::PointFrame& points) {
+  Labels labels;
+  Frame frame;
+  frame.time = time;
+  frame.points = points.positions;
+  frame.point_data = arrays(points.fields, labels);
+  series.write(frame);
+}
+
+void write_cells(FrameSeries& series, double time, const coupling::CellFrame& cells) {
+  Labels labels;
+  Frame frame;
+  frame.time = time;
+  frame.points = cells.vertices;
+  frame.shape = cells.corners_per_cell == 8 ? CellShape::hexahedron : CellShape::quad;
+  frame.cells = cells.corners;
+  frame.cell_data = arrays(cells.fields, labels);
+  series.write(frame);
 }
 
 double frame_interval(const Simulation& s) {
@@ -41,8 +70,9 @@ FrameSeries series(const RunFolder& folder, const char* name, std::optional<doub
 
 }  // namespace
 
-Frames::Frames(const Simulation& s, const RunFolder& folder, std::optional<double> keep_until)
-    : tick_(frame_interval(s)), stage_(s.stage()) {
+Frames::Frames(const Simulation& s, const RunFolder& folder, std::optional<double> keep_until,
+               BackgroundWriter& writer)
+    : writer_(writer), tick_(frame_interval(s)), stage_(s.stage()) {
   const coupling::Scene& scene = s.scene();
   const bool wet = coupling::find_formulation(scene.formulation)->carrier != coupling::WaterCarrier::none;
   for (const std::string& f : scene.output.fields)
@@ -66,31 +96,17 @@ void Frames::finish(const Simulation& s) {
 }
 
 void Frames::write(const Simulation& s) {
-  std::deque<std::vector<std::int32_t>> labels;
-  const coupling::PointFrame points = s.points(fields_);
-  Frame soil;
-  soil.time = s.time();
-  soil.points = points.positions;
-  soil.point_data = arrays(points.fields, labels);
-  soil_->write(soil);
-  if (water_) {
-    const coupling::PointFrame flowing = s.water_points();
-    Frame water;
-    water.time = s.time();
-    water.points = flowing.positions;
-    water.point_data = arrays(flowing.fields, labels);
-    water_->write(water);
-  }
-  if (fluid_) {
-    const coupling::CellFrame cells = s.water_cells();
-    Frame fluid;
-    fluid.time = s.time();
-    fluid.points = cells.vertices;
-    fluid.shape = cells.corners_per_cell == 8 ? CellShape::hexahedron : CellShape::quad;
-    fluid.cells = cells.corners;
-    fluid.cell_data = arrays(cells.fields, labels);
-    fluid_->write(fluid);
-  }
+  // A job must be copyable, its values must not be copied: they are shared.
+  auto content = std::make_shared<Content>();
+  content->time = s.time();
+  content->soil = s.points(fields_);
+  if (water_) content->water = s.water_points();
+  if (fluid_) content->fluid = s.water_cells();
+  writer_.submit([this, content = std::move(content)] {
+    write_points(*soil_, content->time, content->soil);
+    if (water_) write_points(*water_, content->time, content->water);
+    if (fluid_) write_cells(*fluid_, content->time, content->fluid);
+  });
   last_ = s.time();
 }
 

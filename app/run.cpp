@@ -21,6 +21,7 @@
 #include "core/units.hpp"
 #include "coupling/simulation.hpp"
 #include "io/atomic_file.hpp"
+#include "io/background_writer.hpp"
 #include "io/log.hpp"
 
 namespace polder::app {
@@ -65,6 +66,7 @@ class Run {
   Profiles profiles_;
   StabilityMeasures stability_;
   std::unique_ptr<Frames> frames_;
+  BackgroundWriter writer_;  // of frames and checkpoints; gone before the frames
   RunSummary summary_;
   double until_ = 0;
   double next_checkpoint_ = 0;  // wall clock [s]
@@ -134,7 +136,7 @@ Run::Run(const RunOptions& options, Scene scene)
     write_file_atomically(folder_.case_file(), resolved_);
     copy_references();
   }
-  if (!frames_) frames_ = std::make_unique<Frames>(simulation_, folder_, std::nullopt);
+  if (!frames_) frames_ = std::make_unique<Frames>(simulation_, folder_, std::nullopt, writer_);
   summary_.first_step = simulation_.steps();
   until_ = options.until.value_or(std::numeric_limits<double>::infinity());
   next_checkpoint_ = scene.output.checkpoint_every;
@@ -158,7 +160,7 @@ void Run::restore() {
   reader.require_case(resolved_);
   CheckpointVisitor visitor(reader);
   simulation_.visit(visitor);
-  frames_ = std::make_unique<Frames>(simulation_, folder_, simulation_.time());
+  frames_ = std::make_unique<Frames>(simulation_, folder_, simulation_.time(), writer_);
   tables_.visit(visitor);
   profiles_.visit(visitor);
   frames_->visit(visitor);
@@ -169,16 +171,17 @@ void Run::restore() {
 }
 
 void Run::write_checkpoint() {
-  // What the checkpoint counts as written must be on the disk before it.
+  // What the checkpoint counts as written must be on the disk before it; frames are, by the order of the
+  // jobs.
   tables_.sync();
   profiles_.sync();
-  CheckpointWriter writer(folder_.checkpoint(), program_version(), resolved_);
-  CheckpointVisitor visitor(writer);
+  const auto content = std::make_shared<CheckpointWriter>(folder_.checkpoint(), program_version(), resolved_);
+  CheckpointVisitor visitor(*content);
   simulation_.visit(visitor);
   tables_.visit(visitor);
   profiles_.visit(visitor);
   frames_->visit(visitor);
-  writer.commit();
+  writer_.submit([content] { content->commit(); });
   next_checkpoint_ = clock_.seconds() + simulation_.scene().output.checkpoint_every;
 }
 
@@ -226,6 +229,7 @@ void Run::step() {
   // A stage that fails must not cost the ones before it.
   const bool stage_ended = simulation_.stage() != stage && !simulation_.finished();
   if (computed >= next_checkpoint_ || stage_ended) write_checkpoint();
+  writer_.check();
   const double after = clock_.seconds();
   summary_.stage_wall_seconds[index] += after - before;
   summary_.output_seconds += after - computed;
@@ -252,14 +256,19 @@ void Run::summarise(const std::string& status, const std::string& message) {
   summary_.status = status;
   summary_.message = message;
   summary_.wall_seconds = clock_.seconds();
+  summary_.waited_for_writer = writer_.waited();
+  summary_.writer_seconds = writer_.worked();
   write_summary(simulation_, folder_, summary_);
 }
 
 void Run::finish(RunOutcome& outcome) {
+  const double before = clock_.seconds();
   tables_.finish(simulation_);
   profiles_.finish(simulation_);
   frames_->finish(simulation_);
   write_checkpoint();
+  writer_.flush();
+  summary_.output_seconds += clock_.seconds() - before;
   if (simulation_.finished())
     summary_.expectations = compare_with_expectations(
         simulation_, folder_, std::filesystem::path(options_.case_file).parent_path());
@@ -274,7 +283,9 @@ void Run::finish(RunOutcome& outcome) {
                                    : 0;
   log_.line("done in " + duration_text(summary_.wall_seconds) + ": mechanics " + duration_text(t.mechanics) +
             ", water " + duration_text(t.water) + ", balances " + duration_text(t.audit) + ", output " +
-            duration_text(summary_.output_seconds) + "; " + count_text(speed) + " particle-steps/s");
+            duration_text(summary_.output_seconds) + " (waiting for the writer " +
+            duration_text(summary_.waited_for_writer) + ", which worked " +
+            duration_text(summary_.writer_seconds) + "); " + count_text(speed) + " particle-steps/s");
 }
 
 RunOutcome Run::go() {
@@ -297,12 +308,18 @@ RunOutcome Run::go() {
       finish(outcome);
     } else {
       write_checkpoint();
+      writer_.flush();
       summarise("interrupted", "");
       log_.line("interrupted at " + digits(simulation_.time(), 6) + " s; --restart goes on from here");
       outcome.code = ExitCode::interrupted;
     }
   } catch (const NumericalError& e) {
     log_.error(e.what());
+    try {
+      writer_.flush();
+    } catch (const EnvironmentError& also) {
+      log_.error(also.what());
+    }
     std::error_code none;
     log_.error(std::filesystem::exists(folder_.checkpoint(), none)
                    ? "the last checkpoint is " + folder_.checkpoint().string()

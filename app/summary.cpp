@@ -143,6 +143,8 @@ void write_summary(const Simulation& s, const RunFolder& folder, const RunSummar
   wall["water"] = t.water;
   wall["audit"] = t.audit;
   wall["output"] = summary.output_seconds;
+  wall["output_waited"] = summary.waited_for_writer;  // part of output
+  wall["writer"] = summary.writer_seconds;            // beside the rest, in a thread of its own
   wall["total"] = summary.wall_seconds;
   root["wall_seconds"] = std::move(wall);
 

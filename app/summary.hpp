@@ -17,6 +17,9 @@ struct RunSummary {
   std::string message;  // why it failed
   int threads = 1;
   double wall_seconds = 0, output_seconds = 0;
+  // Part of output_seconds that the run waited for the thread that writes frames and checkpoints, and how
+  // long that thread worked beside the run [s].
+  double waited_for_writer = 0, writer_seconds = 0;
   std::vector<double> stage_wall_seconds;
   std::int64_t first_step = 0;  // of this call; a restarted run has computed others before
   std::vector<ExpectationResult> expectations;

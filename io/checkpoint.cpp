@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 #include <stdexcept>
+#include <variant>
 
 #include "core/error.hpp"
 #include "io/hash.hpp"
@@ -46,29 +47,32 @@ std::string first_difference(std::string_view stored, std::string_view now) {
 }  // namespace
 
 struct CheckpointWriter::State {
-  State(fs::path path, std::size_t expected_bytes) : image(std::move(path), expected_bytes) {}
+  using Values = std::variant<std::vector<double>, std::vector<std::int32_t>, std::vector<std::int64_t>,
+                              std::vector<std::uint64_t>, std::vector<char>>;
 
   template <class T>
   void put(const std::string& name, std::span<const T> values) {
     if (name.empty() || !names.insert(name).second) {
       throw std::invalid_argument("checkpoint: the name '" + name + "' is empty or used twice");
     }
-    image.dataset(name, values);
-    const std::uint64_t checksum = hash_bytes(values.data(), values.size_bytes());
-    image.attribute(name, kChecksum, std::span<const std::uint64_t>(&checksum, 1));
+    bytes += values.size_bytes();
+    arrays.emplace_back(name, std::vector<T>(values.begin(), values.end()));
   }
 
-  hdf5::Image image;
+  fs::path path;
+  std::string program_version;
+  std::uint64_t case_hash = 0;
+  std::vector<std::pair<std::string, Values>> arrays;
   std::set<std::string> names;
+  std::size_t bytes = 0;
 };
 
 CheckpointWriter::CheckpointWriter(fs::path path, std::string_view program_version,
-                                   std::string_view resolved_case, std::size_t expected_bytes)
-    : state_(std::make_unique<State>(std::move(path), expected_bytes + (1 << 16))) {
-  state_->image.attribute(kRoot, kKind, std::span<const std::int64_t>(&kCheckpointFormat, 1));
-  state_->image.attribute(kRoot, kProgram, std::string(program_version));
-  const std::uint64_t hash = hash_text(resolved_case);
-  state_->image.attribute(kRoot, kCaseHash, std::span<const std::uint64_t>(&hash, 1));
+                                   std::string_view resolved_case)
+    : state_(std::make_unique<State>()) {
+  state_->path = std::move(path);
+  state_->program_version = program_version;
+  state_->case_hash = hash_text(resolved_case);
   put_text(kCaseText, resolved_case);
 }
 
@@ -95,9 +99,24 @@ void CheckpointWriter::put_text(const std::string& name, std::string_view text) 
 }
 
 void CheckpointWriter::commit() {
-  const auto arrays = static_cast<std::int64_t>(state_->names.size());
-  state_->image.attribute(kRoot, kArrays, std::span<const std::int64_t>(&arrays, 1));
-  state_->image.write();
+  hdf5::Image image(state_->path, state_->bytes + state_->arrays.size() * 512 + (1 << 16));
+  image.attribute(kRoot, kKind, std::span<const std::int64_t>(&kCheckpointFormat, 1));
+  image.attribute(kRoot, kProgram, state_->program_version);
+  image.attribute(kRoot, kCaseHash, std::span<const std::uint64_t>(&state_->case_hash, 1));
+  for (auto& [name, array] : state_->arrays) {
+    std::visit(
+        [&, &name = name]<class T>(std::vector<T>& values) {
+          const std::span<const T> all(values);
+          image.dataset(name, all);
+          const std::uint64_t checksum = hash_bytes(all.data(), all.size_bytes());
+          image.attribute(name, kChecksum, std::span<const std::uint64_t>(&checksum, 1));
+          std::vector<T>().swap(values);  // the image has them: no two copies of everything
+        },
+        array);
+  }
+  const auto arrays = static_cast<std::int64_t>(state_->arrays.size());
+  image.attribute(kRoot, kArrays, std::span<const std::int64_t>(&arrays, 1));
+  image.write();
 }
 
 struct CheckpointReader::State {

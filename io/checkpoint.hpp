@@ -33,9 +33,8 @@ inline constexpr bool kCheckpointType =
 class CheckpointWriter {
  public:
   // resolved_case: the case with all defaults; its text is stored so that a restart can say what differs.
-  // expected_bytes: roughly the size of all arrays together, to take the memory in one piece.
   CheckpointWriter(std::filesystem::path path, std::string_view program_version,
-                   std::string_view resolved_case, std::size_t expected_bytes = 0);
+                   std::string_view resolved_case);
   ~CheckpointWriter();
   CheckpointWriter(const CheckpointWriter&) = delete;
   CheckpointWriter& operator=(const CheckpointWriter&) = delete;
@@ -51,7 +50,8 @@ class CheckpointWriter {
   requires detail::kCheckpointType<T>
   void put_number(const std::string& name, T value) { put(name, std::span<const T>(&value, 1)); }
 
-  // To disk. Until this returns, the previous checkpoint of that name stands.
+  // To disk, once. Until this returns, the previous checkpoint of that name stands. It may be called by
+  // another thread than the one that put the values in: nothing before it touches HDF5 or the disk.
   void commit();
 
  private:

@@ -71,23 +71,38 @@ Image::Image(fs::path path, std::size_t expected_bytes) : path_(std::move(path))
   // Version 1.8 of the format: every piece of metadata carries a checksum, and what 1.10 adds (a mark "open
   // for writing" that only a regular close takes away) stays out.
   require(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18) >= 0, path_, "file");
-  file_ = checked(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, path_, "file");
-  link_creation_ = checked(H5Pcreate(H5P_LINK_CREATE), H5Pclose, path_, "file");
-  require(H5Pset_create_intermediate_group(link_creation_, 1) >= 0, path_, "file");
+  const auto untimed = [&](hid_t kind) {
+    Handle creation = checked(H5Pcreate(kind), H5Pclose, path_, "file");
+    require(H5Pset_obj_track_times(creation, /*track_times=*/0) >= 0, path_, "file");
+    return creation;
+  };
+  group_creation_ = untimed(H5P_GROUP_CREATE);
+  dataset_creation_ = untimed(H5P_DATASET_CREATE);
+  file_ = checked(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, untimed(H5P_FILE_CREATE), access), H5Fclose, path_,
+                  "file");
+}
+
+// HDF5 would make groups on the way by itself, but with their times.
+void Image::groups_above(const std::string& name) {
+  for (std::size_t slash = name.find('/'); slash != std::string::npos; slash = name.find('/', slash + 1))
+    group(name.substr(0, slash));
 }
 
 void Image::group(const std::string& name) {
-  checked(H5Gcreate2(file_, name.c_str(), link_creation_, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, path_, name);
+  if (!groups_.insert(name).second) return;
+  groups_above(name);
+  checked(H5Gcreate2(file_, name.c_str(), H5P_DEFAULT, group_creation_, H5P_DEFAULT), H5Gclose, path_, name);
 }
 
 template <class T>
 void Image::dataset(const std::string& name, std::span<const T> values, hsize_t columns, hid_t stored_type) {
+  groups_above(name);
   const hsize_t dimensions[2] = {columns > 0 ? values.size() / columns : values.size(), columns};
   const Handle space =
       checked(H5Screate_simple(columns > 0 ? 2 : 1, dimensions, nullptr), H5Sclose, path_, name);
-  const Handle set =
-      checked(H5Dcreate2(file_, name.c_str(), stored_type, space, link_creation_, H5P_DEFAULT, H5P_DEFAULT),
-              H5Dclose, path_, name);
+  const Handle set = checked(
+      H5Dcreate2(file_, name.c_str(), stored_type, space, H5P_DEFAULT, dataset_creation_, H5P_DEFAULT),
+      H5Dclose, path_, name);
   if (values.empty()) return;
   require(H5Dwrite(set, memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0, path_, name);
 }

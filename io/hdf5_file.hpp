@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -48,7 +49,8 @@ hid_t memory_type();
 template <class T>
 hid_t file_type();
 
-// A file under construction in memory. Object names may contain '/': the groups are created as needed.
+// A file under construction in memory. Object names may contain '/': the groups are created as needed. No
+// times are stored, so that the same content makes the same bytes.
 class Image {
  public:
   // expected_bytes: roughly how large it will be; memory is taken in pieces of that size.
@@ -71,9 +73,12 @@ class Image {
   void write();
 
  private:
+  void groups_above(const std::string& name);  // made where they are missing
+
   std::filesystem::path path_;
+  std::set<std::string> groups_;
   Handle file_;
-  Handle link_creation_;
+  Handle group_creation_, dataset_creation_;
 };
 
 // A file read from disk.

@@ -1,5 +1,6 @@
 // Checkpoints: exact round trip, and refusal of everything that is not exactly what was written.
 #include <doctest/doctest.h>
+#include <hdf5.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -191,6 +192,27 @@ TEST_CASE("a disk that fills up leaves the previous checkpoint") {
   CHECK_FALSE(fs::exists(path.string() + ".tmp"));
   write(path, 2.0);
   CHECK(CheckpointReader(path).number<double>("time") == 2.0);
+}
+
+TEST_CASE("a file tells nothing of when it was written") {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "checkpoint.h5";
+  write(path);
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  REQUIRE(file >= 0);
+  struct Seen {
+    int objects = 0, timed = 0;
+  } seen;
+  const auto look = [](hid_t, const char*, const H5O_info_t* info, void* to) -> herr_t {
+    auto& s = *static_cast<Seen*>(to);
+    ++s.objects;
+    if (info->atime != 0 || info->mtime != 0 || info->ctime != 0 || info->btime != 0) ++s.timed;
+    return 0;
+  };
+  CHECK(H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, look, &seen, H5O_INFO_ALL) >= 0);
+  H5Fclose(file);
+  CHECK(seen.objects == 14);  // the root, three groups, nine arrays and the case
+  CHECK(seen.timed == 0);
 }
 
 TEST_CASE("the hash sees single bits, lengths and order") {

@@ -114,6 +114,10 @@ TEST_CASE("a run fills its folder") {
   CHECK(summary.at("expectations").at(0).at("pass") == true);
   CHECK(summary.at("measures").at("foot").get<double>() > 5000);
   CHECK(summary.at("measures").at("top").get<double>() > 0);
+  // Files are written beside the run, which may wait for them.
+  const auto& wall = summary.at("wall_seconds");
+  CHECK(wall.at("writer").get<double>() > 0);
+  CHECK(wall.at("output_waited").get<double>() <= wall.at("output").get<double>());
   // The resolved case runs by itself to the same numbers.
   const std::string again = scratch / "again";
   REQUIRE(polder_program({"run", folder + "/case.toml", "-o", again, "--quiet"}).code == 0);
@@ -169,6 +173,30 @@ TEST_CASE("an interrupted run writes a checkpoint, and its tables go on as if no
   CHECK(text_of(parts + "/history.csv") == text_of(whole + "/history.csv"));
   CHECK(text_of(parts + "/probes.csv") == text_of(whole + "/probes.csv"));
   CHECK(text_of(parts + "/soil.hdf.series") == text_of(whole + "/soil.hdf.series"));
+}
+
+TEST_CASE("a frame that cannot be written ends the run with 4, and the last checkpoint stands") {
+  const Scratch scratch;
+  const std::string whole = scratch / "whole", parts = scratch / "parts";
+  REQUIRE(polder_program({"run", kColumn, "-o", whole, "--quiet"}).code == 0);
+  REQUIRE(polder_program({"run", kColumn, "-o", parts, "--quiet", "--until", "0.0173"}).code == 0);
+  const std::string before = text_of(parts + "/checkpoint.h5");
+  // A folder where the next frame's file is to be built.
+  int next = 0;
+  const auto frame = [&](int number) { return parts + "/soil_00000" + std::to_string(number) + ".hdf"; };
+  while (fs::exists(frame(next))) ++next;
+  fs::create_directories(frame(next) + ".tmp/in_the_way");
+  const Result stopped = polder_program({"run", kColumn, "-o", parts, "--quiet", "--restart"});
+  CHECK(stopped.code == 4);
+  CHECK(stopped.err.find(frame(next) + ": cannot be written: Is a directory") != std::string::npos);
+  CHECK(text_of(parts + "/checkpoint.h5") == before);
+  fs::remove_all(frame(next) + ".tmp");
+  REQUIRE(polder_program({"run", kColumn, "-o", parts, "--quiet", "--restart"}).code == 0);
+  check_same_state(whole, parts);
+  // Frames have the same bytes in any run (the last one before the restart shows where it stopped).
+  REQUIRE(next > 2);
+  for (int i = 0; i < next - 1; ++i)
+    CHECK(text_of(frame(i)) == text_of(whole + frame(i).substr(parts.size())));
 }
 
 TEST_CASE("the number of threads does not change a bit") {
