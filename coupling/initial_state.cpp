@@ -7,6 +7,7 @@
 #include "core/error.hpp"
 #include "core/threads.hpp"
 #include "coupling/body_shape.hpp"
+#include "coupling/mean_share.hpp"
 #include "coupling/unsaturated.hpp"
 
 namespace polder::coupling {
@@ -153,13 +154,19 @@ void set_saturation(World<D>& world) {
     if (water.suction_above != 0) set.suction_stress.assign(n, 0.0);
     if (world.scene.retains_water()) set.retained_water.assign(n, 0.0);
     for (int p = 0; p < n; ++p) {
+      if (set.id[p] >= 0 && world.scene.retains_water()) {
+        Point<D> x, sides;
+        for (int d = 0; d < D; ++d) x[d] = set.position[d][p], sides[d] = 2 * set.half_size[d][p];
+        // Of a point that the line cuts, the part above it: the points of water begin at the line too.
+        const double above = mean_share<D>(
+            x, sides, [&](const Vector3& y) { return y[D - 1] > water_table(water, y) ? 1.0 : 0.0; });
+        set.retained_water[p] = above * water.saturation_above * water.density *
+                                (set.volume[p] - set.mass[p] / set.density_solid);
+      }
       if (set.position[D - 1][p] <= water_table(water, at(set, p))) continue;
       if (!layered) {
         set.wet[p] = 0;
         set.pore_water[p] = water.saturation_above * water.density;
-      } else if (world.scene.retains_water()) {
-        set.retained_water[p] =
-            water.saturation_above * water.density * (set.volume[p] - set.mass[p] / set.density_solid);
       }
       if (!set.suction_stress.empty()) set.suction_stress[p] = water.saturation_above * water.suction_above;
       if (capillary >= 0) set.state[capillary][p] = 1;

@@ -5,6 +5,7 @@
 
 #include "core/error.hpp"
 #include "coupling/body_shape.hpp"
+#include "coupling/mean_share.hpp"
 #include "coupling/points.hpp"
 #include "coupling/two_layer.hpp"
 #include "fdm/mixture_flow.hpp"
@@ -15,26 +16,6 @@ namespace {
 
 constexpr double kLeastShare = 0.02;  // of a point's domain with water in it
 constexpr int kWaterSeed = 7919;      // points of water are scattered otherwise than those of the soil
-
-// Mean over a point's domain of the share of space that water takes. Domains that a surface cuts are sampled,
-// so that the volume of the water and its surface do not come in steps of whole points.
-template <int D, class Share>
-double mean_share(const Point<D>& x, const Point<D>& spacing, const Share& share) {
-  constexpr int kSamples = D == 2 ? 8 : 4;
-  const auto at = [&](int number, int per_axis, double reach) {
-    Vector3 y{};
-    for (int d = 0; d < D; ++d, number /= per_axis)
-      y[d] = x[d] + reach * spacing[d] * ((number % per_axis + 0.5) / per_axis - 0.5);
-    return share(y);
-  };
-  const double middle = at(0, 1, 1);
-  bool cut = false;
-  for (int corner = 0; corner < ipow(2, D); ++corner) cut |= at(corner, 2, 1.9) != middle;
-  if (!cut) return middle;
-  double sum = 0;
-  for (int k = 0; k < ipow(kSamples, D); ++k) sum += at(k, kSamples, 1);
-  return sum / ipow(kSamples, D);
-}
 
 // Points of one body; share(x): of the space at x that water takes, 0: none there.
 template <int D, class Share>
