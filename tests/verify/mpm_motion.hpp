@@ -42,6 +42,8 @@ double energy_growth(const Scheme& scheme, bool cell_average, double offset, int
 struct MotionError {
   double displacement = 0;
   double energy = 0;
+  long steps = 0;
+  double seconds = 0;  // processor time of the steps, of manufactured() only [s]
 };
 
 // Bar fixed at x = 0, free at x = L, released with v = v0 sin(pi x / 2L): u = v0/w sin(wt) sin(pi x/2L), one

@@ -19,7 +19,7 @@ struct Infiltration {
   double defect = 0;         // of the mass balance over the infiltrated volume
   long steps = 0, rejected = 0;
   double iterations = 0;  // a step
-  double seconds = 0;     // wall
+  double seconds = 0;     // processor time [s]
 };
 
 // New Mexico soil (Celia, Bouloutas & Zarba 1990): suction head 10 m, 0.75 m at the top from t = 0; at 1 d.

@@ -51,7 +51,7 @@ struct TwoWaves {
   double pressure = 0, stress = 0, grains = 0, water = 0;
   double speed = 0, amplitude = 0;  // of the second wave over the reference's [-]
   long steps = 0;
-  double seconds = 0;
+  double seconds = 0;  // processor time of the steps [s]
 };
 // Compared with the equations of the given form: uw or up.
 TwoWaves two_waves(const Choice& choice, ColumnEquations equations);
