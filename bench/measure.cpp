@@ -91,6 +91,18 @@ std::vector<std::string> machine_lines() {
           std::string("version: ") + app::kVersion + (commit.empty() ? "" : ", commit " + commit)};
 }
 
+namespace {
+
+// Quoted where it has to be (RFC 4180).
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+}  // namespace
+
 ResultTable::ResultTable(std::string name, std::string title, std::vector<std::string> columns)
     : name_(std::move(name)), title_(std::move(title)), columns_(std::move(columns)) {}
 
@@ -115,16 +127,17 @@ std::string ResultTable::markdown() const {
 }
 
 void ResultTable::write(const std::string& folder) const {
+  std::cout << markdown();
+  write_files(folder);
+}
+
+void ResultTable::write_files(const std::string& folder) const {
   std::filesystem::create_directories(folder);
-  const std::string text = markdown();
-  std::cout << text;
-  std::ofstream(folder + "/" + name_ + ".md") << text;
+  std::ofstream(folder + "/" + name_ + ".md") << markdown();
   std::ofstream csv(folder + "/" + name_ + ".csv");
   for (const std::string& line : machine_lines()) csv << "# " << line << "\n";
   const auto put = [&](const std::vector<std::string>& cells) {
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      csv << (i > 0 ? "," : "")
-          << (cells[i].find(',') == std::string::npos ? cells[i] : '"' + cells[i] + '"');
+    for (std::size_t i = 0; i < cells.size(); ++i) csv << (i > 0 ? "," : "") << csv_cell(cells[i]);
     csv << "\n";
   };
   put(columns_);
@@ -138,12 +151,18 @@ std::string digits(double value, int places) {
   return text;
 }
 
-Options::Options(int count, char** words, std::vector<std::string> names, const char* usage) : usage_(usage) {
+Options::Options(int count, char** words, std::vector<std::string> names, const char* usage,
+                 std::vector<std::string> flags)
+    : usage_(usage) {
   for (int i = 1; i < count; ++i) {
     const std::string name = words[i];
     if (name == "--help" || name == "-h") {
       std::cout << usage;
       std::exit(0);
+    }
+    if (std::find(flags.begin(), flags.end(), name) != flags.end()) {
+      given_.emplace_back(name, "");
+      continue;
     }
     if (std::find(names.begin(), names.end(), name) == names.end() || i + 1 == count) {
       std::cerr << "error: " << name << "\n" << usage;
@@ -169,6 +188,17 @@ std::string Options::text(const std::string& name, const std::string& otherwise)
   for (const auto& [n, value] : given_)
     if (n == name) return value;
   return otherwise;
+}
+
+std::vector<std::string> Options::all(const std::string& name) const {
+  std::vector<std::string> values;
+  for (const auto& [n, value] : given_)
+    if (n == name) values.push_back(value);
+  return values;
+}
+
+bool Options::flag(const std::string& name) const {
+  return !all(name).empty();
 }
 
 }  // namespace polder::bench

@@ -38,6 +38,7 @@ class ResultTable {
   ResultTable(std::string name, std::string title, std::vector<std::string> columns);
   void add(std::vector<std::string> row);
   void write(const std::string& folder) const;
+  void write_files(const std::string& folder) const;  // and nothing on the screen
 
  private:
   std::string markdown() const;
@@ -48,13 +49,16 @@ class ResultTable {
 
 std::string digits(double value, int places);
 
-// Words of a command line, "--name value ..." with the names given; --help and errors end the program with
-// `usage`.
+// Words of a command line, "--name value ..." with the names given, and flags without a value; --help and
+// errors end the program with `usage`.
 class Options {
  public:
-  Options(int count, char** words, std::vector<std::string> names, const char* usage);
+  Options(int count, char** words, std::vector<std::string> names, const char* usage,
+          std::vector<std::string> flags = {});
   double number(const std::string& name, double otherwise) const;
   std::string text(const std::string& name, const std::string& otherwise) const;
+  std::vector<std::string> all(const std::string& name) const;  // in the order given
+  bool flag(const std::string& name) const;
 
  private:
   std::vector<std::pair<std::string, std::string>> given_;
