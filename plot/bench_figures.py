@@ -2,7 +2,7 @@
 """Draws the tables of `polder bench`: bench_figures.py FILE.csv, a PNG beside it.
 
 throughput: particle-steps per second of every run, with one thread and with all; scaling: cost and memory of a point
-against the number of points; precision: error against seconds.
+against the number of points; precision: error against seconds; stability: maps, a figure each.
 """
 import csv
 import os
@@ -15,6 +15,7 @@ import figure_style
 import matplotlib.pyplot as plt
 import numpy as np
 from bench_fronts import draw_precision
+from bench_maps import draw_stability
 
 
 def read(path):
@@ -70,6 +71,9 @@ def main(argv):
         return 2
     machine, rows = read(argv[1])
     kind = os.path.splitext(os.path.basename(argv[1]))[0]
+    if kind == "stability" and rows:
+        draw_stability(rows, machine, os.path.dirname(argv[1]))
+        return 0
     draw = {"throughput": draw_throughput, "scaling": draw_scaling, "precision": draw_precision}.get(kind)
     if draw is None or not rows:
         print(f"error: {argv[1]} is no table of a benchmark with a figure", file=sys.stderr)
