@@ -35,7 +35,6 @@ std::vector<ParticleField> ParticleSet<D>::fields() {
   if (!suction_stress.empty()) add("suction_stress", suction_stress);
   if (!conductivity.empty()) add("conductivity", conductivity);
   if (!wet.empty()) add("wet", wet);
-  if (!nodal_weight.empty()) add("nodal_weight", nodal_weight);
   if (!pore_pressure.empty()) add("pore_pressure", pore_pressure);
   if (!expelled.empty()) add("expelled", expelled);
   for (int d = 0; d < D; ++d)

@@ -56,10 +56,6 @@ class ParticleSet {
   bool group_by_cell = false;  // keep home_cell
   Reals home_cell;             // cell inside its block where the last sort found the point
   Reals wet;                   // 1 where the pores are full of water, 0 above the phreatic line
-  // Where soil and water have points of their own: what a unit of volume adds to the nodes' eighth number,
-  // see mpm::Transfer. Of soil: the part of it that pore pressure pushes [-]; of water: drag of the pores
-  // around it [Pa s/m2].
-  Reals nodal_weight;
 
   // Where the points carry the pore water's state: its pressure [Pa], volume of water that has flowed out of
   // a unit of volume in the last step [-], and with the water's full inertia its velocity [m/s].

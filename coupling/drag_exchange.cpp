@@ -58,9 +58,14 @@ void push_by_drag(World<D>& world, double end, double dt) {
   const double floor = water_floor(world);
   const Reals &grains_old = skeleton.v_old(), &water_old = layer.fluid.velocity_old();
   Reals& trial = skeleton.v_trial();
-  layer.grains = trial;
+  const std::vector<int>& nodes = layer.nodes;
+  parallel_for(static_cast<int>(nodes.size()), [&](int k) {
+    for (std::size_t j = static_cast<std::size_t>(nodes[k]) * kStride, end = j + D; j < end; ++j)
+      layer.grains[j] = trial[j];
+  });
   skeleton.boundaries().apply(end, dt, skeleton.sums(), layer.grains, false, false);
-  parallel_for(skeleton.grid().slots(), [&](int i) {
+  parallel_for(static_cast<int>(nodes.size()), [&](int k) {
+    const int i = nodes[k];
     const NodeDrag node = node_drag(world, i, dt, floor);
     for (int d = 0; d < D; ++d) {
       const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
@@ -84,9 +89,9 @@ void share_drag(World<D>& world, double dt) {
   const double per_density = 1 / world.scene.water.density, floor = water_floor(world);
   const Reals &grains_old = skeleton.v_old(), &water_old = layer.fluid.velocity_old();
   Reals& velocity = skeleton.v_new();
-  for (Reals* r : {&layer.water, &layer.grains_response, &layer.water_response}) r->resize(velocity.size());
-  if (!layer.relative_inertia) layer.following.resize(skeleton.grid().slots());
-  parallel_for(skeleton.grid().slots(), [&](int i) {
+  const std::vector<int>& nodes = layer.nodes;
+  parallel_for(static_cast<int>(nodes.size()), [&](int k) {
+    const int i = nodes[k];
     const NodeDrag node = node_drag(world, i, dt, floor);
     if (!layer.relative_inertia) layer.following[i] = node.following();
     const bool has_soil = node.soil > skeleton.mass_floor(), has_water = node.water > floor;

@@ -135,6 +135,28 @@ void node_gradient(PoreWater<D>& w, const Reals& field, fdm::BoundaryValues valu
     w.pressure.node_gradient(field, values, fdm::WallNormal::inward, out);
 }
 
+// Fill, porosity and mobility of the cells from the soil in them.
+template <int D>
+void update_soil_cells(World<D>& world) {
+  PoreWater<D>& w = *world.pore_water;
+  const Grid<D>& grid = world.skeleton.grid();
+  const double cell = std::pow(grid.spacing(), D), unit_weight = world.unit_weight();
+  const bool follows_porosity = world.scene.kozeny_carman();
+  const bool radial = world.scene.grid.space == Space::axisymmetric;
+  parallel_for(grid.blocks(), [&](int block) {
+    for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
+      const double* s = &w.cell_sums[static_cast<std::size_t>(i) * 4];
+      double volume = cell;
+      if (radial) volume *= grid.origin()[0] + (grid.index(i)[0] + 0.5) * grid.spacing();
+      const bool some = s[0] > 1e-9 * volume;
+      w.fill[i] = s[0] / volume;
+      w.porosity[i] = some ? std::clamp(1 - s[1] / s[0], 0.05, 0.95) : 0.0;
+      w.darcy_mobility[i] = some ? s[2] / s[0] / unit_weight : 0.0;
+      if (some && follows_porosity) w.darcy_mobility[i] *= kozeny_carman(w.porosity[i]);
+    }
+  });
+}
+
 }  // namespace
 
 template <int D>
@@ -153,26 +175,13 @@ template <int D>
 void update_water_cells(World<D>& world, double end) {
   PoreWater<D>& w = *world.pore_water;
   Stopwatch watch(w.wall_seconds);
-  const Grid<D>& grid = world.skeleton.grid();
   world.skeleton.scatter_cells(w.cell_sums);
-  const int slots = grid.slots();
+  const int slots = world.skeleton.grid().slots();
   for (Reals* r : {&w.fill, &w.porosity, &w.darcy_mobility}) r->resize(slots);
-  const double cell = std::pow(grid.spacing(), D), unit_weight = world.unit_weight();
-  const bool follows_porosity = world.scene.kozeny_carman();
-  const bool radial = world.scene.grid.space == Space::axisymmetric;
-  parallel_for(grid.blocks(), [&](int block) {
-    for (int i = block * Grid<D>::kCells; i < (block + 1) * Grid<D>::kCells; ++i) {
-      const double* s = &w.cell_sums[static_cast<std::size_t>(i) * 4];
-      double volume = cell;
-      if (radial) volume *= grid.origin()[0] + (grid.index(i)[0] + 0.5) * grid.spacing();
-      const bool some = s[0] > 1e-9 * volume;
-      w.fill[i] = s[0] / volume;
-      w.porosity[i] = some ? std::clamp(1 - s[1] / s[0], 0.05, 0.95) : 0.0;
-      w.darcy_mobility[i] = some ? s[2] / s[0] / unit_weight : 0.0;
-      if (some && follows_porosity) w.darcy_mobility[i] *= kozeny_carman(w.porosity[i]);
-    }
-  });
-  if (w.layer) update_layer_cells(world);
+  if (w.layer)
+    update_layer_cells(world);
+  else
+    update_soil_cells(world);
   w.conditions = conditions_at(world, end);
   w.cells.update(w.fill, w.conditions);
   if (w.unsaturated)

@@ -59,12 +59,14 @@ struct WaterLayer {
   std::unique_ptr<WaterViscosity<D>> viscosity;  // where the scene asks for it
   double spacing = 0;                            // of new points [m]
   // Cells (slots): volume of the water's points; that of the grains with the water they retain [m3]; share
-  // taken by soil, its pores included; resistance of the pores per volume of water [Pa s/m2]; volume that has
-  // come in through open sides and has no point yet [m3].
-  Reals sums, grain_volume, soil_fill, drag, owed;
+  // taken by soil, its pores included; part of that soil which lies in water; resistance of the pores per
+  // volume of water [Pa s/m2]; volume that has come in through open sides and has no point yet [m3].
+  Reals sums, grain_volume, soil_fill, submerged, drag, owed;
   // Where relative inertia is neglected, share of the water that is in pores: of cells, of nodes [-]; and
   // change of the nodes' velocity of water with that of the grains.
   Reals in_pores, tied, following;
+  // Nodes with grains or water: all that a step has to look at. The fields of nodes are zero elsewhere.
+  std::vector<int> nodes, found_nodes;  // the latter: work space
   // Nodes (slots * 4): velocities with drag exchanged and their responses to a unit pressure gradient.
   Reals grains, water, grains_response, water_response;
   Reals divergence, face_mobility;  // of cells and faces, see fdm/mixture_flow.hpp

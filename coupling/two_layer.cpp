@@ -12,7 +12,6 @@
 #include "coupling/point_water.hpp"
 #include "coupling/stopwatch.hpp"
 #include "fdm/mixture_flow.hpp"
-#include "mpm/point_stencil.hpp"
 
 namespace polder::coupling {
 namespace {
@@ -23,13 +22,40 @@ constexpr int kDriftInterval = 8;    // steps between two corrections of the wat
 constexpr double kDriftShare = 0.3;  // of the drift that one of them takes back
 constexpr int kWettingInterval = 8;  // steps between two looks for soil that water has reached
 
+// Nodes with grains or water. Nothing moves at the others.
+template <int D>
+void find_nodes(World<D>& world) {
+  PoreWater<D>& w = *world.pore_water;
+  WaterLayer<D>& layer = *w.layer;
+  const Reals &soil = world.skeleton.sums(), &water = layer.fluid.sums();
+  const std::size_t slots = world.skeleton.grid().slots();
+  std::vector<int>& found = layer.found_nodes;
+  found.clear();
+  for (std::size_t i = 0; i < slots; ++i)
+    if (soil[i * 8] > 0 || water[i * 8] > 0) found.push_back(static_cast<int>(i));
+  if (found == layer.nodes && layer.water.size() == slots * kStride) return;
+  layer.nodes.swap(found);
+  for (Reals* r :
+       {&layer.fluid.velocity(), &layer.grains, &layer.water, &layer.grains_response, &layer.water_response})
+    r->assign(slots * kStride, 0.0);
+  if (!w.compressible) w.correction.assign(slots * kStride, 0.0);
+  if (!layer.relative_inertia) layer.following.assign(slots, 0.0);
+}
+
+// f(slot) for them.
+template <int D, class F>
+void each_node(const World<D>& world, const F& f) {
+  const std::vector<int>& nodes = world.pore_water->layer->nodes;
+  parallel_for(static_cast<int>(nodes.size()), [&](int k) { f(nodes[k]); });
+}
+
 // w_trial = w_old + dt (g - grad p / rho_w) of nodes with water, under the walls.
 template <int D>
 void predict_water(World<D>& world, double end, double dt, const Point<D>& gravity) {
   PoreWater<D>& w = *world.pore_water;
   mpm::FluidLayer<D>& fluid = w.layer->fluid;
   const double per_density = 1 / world.scene.water.density, floor = water_floor(world);
-  parallel_for(world.skeleton.grid().slots(), [&](int i) {
+  each_node(world, [&](int i) {
     const bool some = fluid.sums()[static_cast<std::size_t>(i) * 8] > floor;
     for (int d = 0; d < D; ++d) {
       const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
@@ -50,8 +76,7 @@ void complete_velocities(World<D>& world, const Reals& grains) {
   const mpm::Skeleton<D>& skeleton = world.skeleton;
   const std::vector<std::uint8_t>& walled = layer.fluid.held_components();
   const double floor = water_floor(world);
-  layer.grains.resize(grains.size());
-  parallel_for(skeleton.grid().slots(), [&](int i) {
+  each_node(world, [&](int i) {
     const bool has_soil = skeleton.sums()[static_cast<std::size_t>(i) * 8] > skeleton.mass_floor();
     const bool has_water = layer.fluid.sums()[static_cast<std::size_t>(i) * 8] > floor;
     for (int d = 0; d < D; ++d) {
@@ -94,7 +119,7 @@ void follow_grains(World<D>& world, double end, double dt) {
   mpm::Skeleton<D>& skeleton = world.skeleton;
   const Reals &grains = skeleton.strain_velocity(end, dt), &correction = world.pore_water->correction;
   const double floor = water_floor(world);
-  parallel_for(skeleton.grid().slots(), [&](int i) {
+  each_node(world, [&](int i) {
     const bool has_soil = skeleton.sums()[static_cast<std::size_t>(i) * 8] > skeleton.mass_floor();
     const bool has_water = layer.fluid.sums()[static_cast<std::size_t>(i) * 8] > floor;
     for (int d = 0; d < D && has_soil; ++d) {
@@ -112,13 +137,12 @@ void correct(World<D>& world, double end, double dt) {
   PoreWater<D>& w = *world.pore_water;
   WaterLayer<D>& layer = *w.layer;
   const mpm::Skeleton<D>& skeleton = world.skeleton;
-  w.correction.resize(layer.grains.size());
-  parallel_for(skeleton.grid().slots(), [&](int i) {
+  each_node(world, [&](int i) {
     const bool has_soil = skeleton.sums()[static_cast<std::size_t>(i) * 8] > skeleton.mass_floor();
-    for (int d = 0; d < kStride; ++d) {
+    for (int d = 0; d < D; ++d) {
       const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
-      w.correction[j] = d < D && has_soil ? -layer.grains_response[j] * w.node_gradient[j] : 0.0;
-      if (d < D) layer.fluid.velocity()[j] = layer.water[j] - layer.water_response[j] * w.node_gradient[j];
+      w.correction[j] = has_soil ? -layer.grains_response[j] * w.node_gradient[j] : 0.0;
+      layer.fluid.velocity()[j] = layer.water[j] - layer.water_response[j] * w.node_gradient[j];
     }
   });
   world.skeleton.correct(end, dt, w.correction);
@@ -159,24 +183,8 @@ void take_back_drift(World<D>& world) {
     excess[cell.slot] = (layer.grain_volume[cell.slot] + water) / cell.volume - 1;
   }
   layer.correction.solve(excess, w.porosity, kDriftShare, layer.displacement);
-  ParticleSet<D>& set = layer.fluid.points();
   const double h = grid.spacing();
-  std::vector<double> far(set.ranges.size(), 0.0);
-  parallel_for(static_cast<int>(set.ranges.size()), [&](int block) {
-    const auto range = set.ranges[block];
-    for (int p = range.first; p < range.first + range.count; ++p) {
-      if (set.id[p] < 0) continue;
-      Point<D> x;
-      for (int d = 0; d < D; ++d) x[d] = set.position[d][p];
-      const Point<D> u = mpm::interpolate<D>(grid, mpm::ShapeKind::linear, x, layer.displacement, kStride);
-      for (int d = 0; d < D; ++d) {
-        const double move = std::clamp(u[d], -0.1 * h, 0.1 * h);
-        set.position[d][p] += move;
-        far[block] = std::max(far[block], std::abs(move) / h);
-      }
-    }
-  });
-  world.skeleton.add_travel(far.empty() ? 0.0 : *std::max_element(far.begin(), far.end()));
+  world.skeleton.add_travel(layer.fluid.shift(layer.displacement, 0.1 * h) / h);
 }
 
 }  // namespace
@@ -187,31 +195,38 @@ void update_layer_cells(World<D>& world) {
   WaterLayer<D>& layer = *w.layer;
   const Grid<D>& grid = world.skeleton.grid();
   layer.fluid.scatter_cells(layer.sums);
-  layer.drag.resize(grid.slots());
-  layer.soil_fill.resize(grid.slots());
-  if (!layer.relative_inertia) layer.in_pores.resize(grid.slots());
-  layer.grain_volume.resize(grid.slots());
+  const std::size_t slots = grid.slots();
+  for (Reals* r : {&layer.drag, &layer.soil_fill, &layer.submerged, &layer.grain_volume}) r->resize(slots);
+  if (!layer.relative_inertia) layer.in_pores.resize(slots);
   const double cell_volume = std::pow(grid.spacing(), D), unit_weight = world.unit_weight();
   const bool radial = world.scene.grid.space == Space::axisymmetric;
   const bool follows_porosity = world.scene.kozeny_carman(), retains = world.scene.retains_water();
-  const double per_density = 1 / world.scene.water.density;
+  const double density = world.scene.water.density, per_density = 1 / density;
   parallel_for(grid.slots(), [&](int i) {
     const double* s = &w.cell_sums[static_cast<std::size_t>(i) * 4];
     const double grains = layer.grain_volume[i] = s[1] + (retains ? s[3] * per_density : 0.0);
     const double water = layer.sums[static_cast<std::size_t>(i) * 4];
+    w.darcy_mobility[i] = 0;
+    if (s[0] == 0 && grains == 0 && water == 0) {
+      w.fill[i] = layer.soil_fill[i] = layer.submerged[i] = layer.drag[i] = 0;
+      w.porosity[i] = 1;
+      if (!layer.relative_inertia) layer.in_pores[i] = 0;
+      return;
+    }
     double volume = cell_volume;
     if (radial) volume *= grid.origin()[0] + (grid.index(i)[0] + 0.5) * grid.spacing();
     const bool some = s[0] > 1e-9 * volume;
     const double soil_fill = s[0] / volume;
     const double pores = some ? std::clamp(1 - grains / s[0], kLeastPorosity, 1.0) : 1.0;  // of soil, for it
-    w.darcy_mobility[i] = 0;
     // Water fills the pores first, then the space beside and above the soil.
     const double room = pores * soil_fill * volume;
     w.fill[i] = water <= room ? water / (pores * volume) : std::min(soil_fill, 1.0) + (water - room) / volume;
     // Of the mixture: of soil where it ends with the water, of both where water stands above it.
     const double mixture = volume * std::clamp(std::max(soil_fill, w.fill[i]), 1e-9, 1.0);
     w.porosity[i] = std::clamp(1 - grains / mixture, kLeastPorosity, 1.0);
-    layer.soil_fill[i] = std::min(soil_fill, 1.0);
+    const double own = layer.soil_fill[i] = std::min(soil_fill, 1.0);
+    // Pressure pushes the grains of the soil that lies in water.
+    layer.submerged[i] = own > 0 ? std::min(1.0, w.fill[i] / own) : 0.0;
     double conductivity = some ? s[2] / s[0] : 0.0;
     if (some && follows_porosity)
       conductivity *= kozeny_carman(std::clamp(1 - s[1] / s[0], kLeastPorosity, 1.0));
@@ -224,25 +239,9 @@ void update_layer_cells(World<D>& world) {
       layer.in_pores[i] = conductivity > 0 ? std::min(1.0, of_mixture) : 0.0;
     }
   });
-  ParticleSet<D>& water = layer.fluid.points();
-  parallel_for(water.slots(), [&](int p) {
-    if (water.id[p] >= 0) water.nodal_weight[p] = layer.drag[grid.slot(water.cell_of(grid, p))];
-  });
-  // Pressure pushes the grains of the soil that lies in water; all of that soil where it holds its water.
-  for (auto& body : world.skeleton.bodies()) {
-    ParticleSet<D>& soil = *body;
-    if (soil.wet.empty()) continue;
-    soil.nodal_weight.resize(soil.slots(), 0.0);
-    parallel_for(soil.slots(), [&](int p) {
-      if (soil.id[p] < 0) return;
-      const int slot = grid.slot(soil.cell_of(grid, p));
-      const double submerged =
-          layer.soil_fill[slot] > 0 ? std::min(1.0, w.fill[slot] / layer.soil_fill[slot]) : 0.0;
-      double grains = soil.mass[p] / soil.density_solid;
-      if (!soil.retained_water.empty()) grains += soil.retained_water[p] * per_density;
-      soil.nodal_weight[p] = submerged * (layer.held ? 1.0 : std::min(1.0, grains / soil.volume[p]));
-    });
-  }
+  layer.fluid.set_cell_drag(layer.drag);
+  // All of the soil where it holds its water.
+  world.skeleton.set_cell_weight({&layer.submerged, !layer.held, density});
 }
 
 double wave_factor(const Scene& scene) {
@@ -279,6 +278,7 @@ mpm::MoveResult step_two_layer(World<D>& world, const StepInput& in, long step) 
   update_water_cells(world, end);
   skeleton.scatter(end);
   layer.fluid.scatter();
+  find_nodes(world);
 
   push_by_pressure(world);  // leaves grad p^n at the nodes
   skeleton.predict(in.dt, gravity, in.damping, &w.acceleration);

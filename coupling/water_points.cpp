@@ -45,7 +45,7 @@ void add_points(World<D>& world, const Body& body, const BodyShape& shape, const
   }
   const int first = set.slots();
   set.append(part.slots());
-  set.wet.resize(set.slots(), 1.0), set.nodal_weight.resize(set.slots(), 0.0);
+  set.wet.resize(set.slots(), 1.0);
   set.reference_half_size = std::max(set.reference_half_size, part.reference_half_size);
   for (int p = 0; p < part.slots(); ++p) {
     const int q = first + p;
@@ -152,16 +152,24 @@ constexpr double kInside = 1e-6;     // distance to a side that points keep [cel
 constexpr double kNothing = 1e-9;    // volume of a point that is as good as gone, over that of a whole one
 constexpr double kBeginning = 0.02;  // and of one that begins
 
+// Whether water passes a side of the grid at a cell.
+template <int D>
+bool passes(const fdm::WaterCells<D>& cells, int slot) {
+  const auto faces = cells.boundary_faces();
+  return std::any_of(faces.begin(), faces.end(), [&](const fdm::BoundaryFace<D>& f) {
+    return f.boundary >= 0 && !f.free_surface && f.open && cells.cells()[f.cell].slot == slot;
+  });
+}
+
 // Points stay inside the grid. One that has gone out where a boundary is open in name but takes no pressure,
 // above the level of a head, is gone: it has dripped off.
 template <int D>
-void hold_inside(World<D>& world, const std::vector<std::uint8_t>& passing) {
+void hold_inside(World<D>& world) {
   PoreWater<D>& w = *world.pore_water;
   ParticleSet<D>& set = w.layer->fluid.points();
   const Grid<D>& grid = world.skeleton.grid();
   const double h = grid.spacing();
-  for (int p = 0; p < set.slots(); ++p) {
-    if (set.id[p] < 0) continue;
+  const auto hold = [&](int p) {
     int side = -1;
     Index<D> cell;
     for (int d = 0; d < D; ++d) {
@@ -172,13 +180,26 @@ void hold_inside(World<D>& world, const std::vector<std::uint8_t>& passing) {
       if (inside != x) set.position[d][p] = grid.origin()[d] + inside * h;
       cell[d] = std::clamp(static_cast<int>(inside), 0, grid.cells()[d] - 1);
     }
-    if (side < 0) continue;
+    if (side < 0) return;
     const int slot = grid.slot(cell);
-    const bool wall = slot < 0 || (w.layer->fluid.held_components()[slot] >> (side / 2) & 1) ||
-                      (!passing.empty() && passing[slot]);
-    if (wall) continue;
+    const bool wall =
+        slot < 0 || (w.layer->fluid.held_components()[slot] >> (side / 2) & 1) || passes(w.cells, slot);
+    if (wall) return;
     w.layer->removed += set.volume[p], w.outflow += set.volume[p];
     set.remove(p);
+  };
+  // Points leave the blocks they were sorted into by less than a cell.
+  for (int block = 0; block < grid.occupied_blocks(); ++block) {
+    const Index<D> first = grid.block_origin(block);
+    const auto range = set.ranges[block];
+    for (int d = 0; d < D; ++d) {
+      const bool lower = first[d] == 0, upper = first[d] + Grid<D>::kSide >= grid.cells()[d];
+      if (!lower && !upper) continue;
+      const double low = grid.origin()[d] + 2 * kInside * h,
+                   high = grid.origin()[d] + (grid.cells()[d] - 2 * kInside) * h;
+      for (int p = range.first; p < range.first + range.count; ++p)
+        if ((set.position[d][p] < low || set.position[d][p] > high) && set.id[p] >= 0) hold(p);
+    }
   }
 }
 
@@ -248,7 +269,7 @@ void append(World<D>& world, const std::vector<Arrival<D>>& arrivals) {
   ParticleSet<D>& set = layer.fluid.points();
   const int first = set.slots();
   set.append(static_cast<int>(arrivals.size()));
-  set.wet.resize(set.slots(), 1.0), set.nodal_weight.resize(set.slots(), 0.0);
+  set.wet.resize(set.slots(), 1.0);
   for (std::size_t k = 0; k < arrivals.size(); ++k) {
     const int p = first + static_cast<int>(k);
     for (int d = 0; d < D; ++d) {
@@ -277,13 +298,7 @@ void pass_open_sides(World<D>& world, double dt) {
   ParticleSet<D>& set = layer.fluid.points();
   const Grid<D>& grid = world.skeleton.grid();
   const bool open = std::any_of(scene.water_boundaries.begin(), scene.water_boundaries.end(), opens);
-  std::vector<std::uint8_t> passing;
-  if (open) {
-    passing.assign(grid.slots(), 0);
-    for (const fdm::BoundaryFace<D>& f : w.cells.boundary_faces())
-      if (f.boundary >= 0 && !f.free_surface && f.open) passing[w.cells.cells()[f.cell].slot] = 1;
-  }
-  hold_inside(world, passing);
+  hold_inside(world);
   if (!open) return;
 
   layer.owed.resize(grid.slots(), 0.0);

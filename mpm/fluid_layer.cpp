@@ -26,7 +26,7 @@ void FluidLayer<D>::follow_grid() {
 
 template <int D>
 void FluidLayer<D>::scatter() {
-  scatter_state(transfer_, affine_, sums_, v_old_);
+  scatter_fluid(transfer_, affine_, sums_, v_old_);
 }
 
 template <int D>

@@ -40,10 +40,14 @@ class FluidLayer {
   void scatter();
   // Volume of the fluid in cells by the overlap of the points' domains, {V, V, -, -} [slots * 4].
   void scatter_cells(Reals& cells) { mpm::scatter_cells(transfer_, cells); }
+  // Drag of a unit of volume of the fluid in each cell, for scatter() [slots, Pa s/m2]; must outlive it.
+  void set_cell_drag(const Reals& drag) { transfer_.weight.of_cell = &drag; }
   void set_flip(double flip) { flip_ = flip; }
   void constrain(double time, double dt, Reals& velocity);
   // Throws NumericalError where a point runs away.
   MoveResult gather(double time, double dt);
+  // Moves the points, not their velocities; see mpm::shift_points.
+  double shift(const Reals& displacement, double most) { return shift_points(transfer_, displacement, most); }
   AffineKind affine() const { return affine_; }
 
   const Reals& sums() const { return sums_; }

@@ -64,6 +64,8 @@ class Skeleton {
   // fields).
   bool sort(bool force = false);
   void scatter(double time);
+  // Of the volumes that later scatters bring to the nodes; what it points to must outlive them.
+  void set_cell_weight(const CellWeight& weight) { transfer_.weight = weight; }
   // Soil in cells by the overlap of particle domains, see mpm::scatter_cells [slots * 4].
   void scatter_cells(Reals& cells) { mpm::scatter_cells(transfer_, cells); }
 

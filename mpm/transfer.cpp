@@ -33,6 +33,14 @@ void scatter_state(Transfer<D>& transfer, AffineKind affine, Reals& sums, Reals&
 }
 
 template <int D>
+void scatter_fluid(Transfer<D>& transfer, AffineKind affine, Reals& sums, Reals& velocity) {
+  POLDER_SIMD_CALL(scatter_fluid, transfer, affine);
+  fit(transfer, Transfer<D>::kSum, sums);
+  fit(transfer, Transfer<D>::kVector, velocity);
+  POLDER_SIMD_CALL(sum_fluid, transfer, sums, velocity);
+}
+
+template <int D>
 void scatter_cells(Transfer<D>& transfer, Reals& cells) {
   POLDER_SIMD_CALL(scatter_cells, transfer);
   fit(transfer, Transfer<D>::kCellSum, cells);
@@ -71,12 +79,18 @@ MoveResult update_stress_and_move(Transfer<D>& transfer, const MoveOptions& opti
   return POLDER_SIMD_CALL(update_stress_and_move, transfer, options, v_old, v);
 }
 
+template <int D>
+double shift_points(Transfer<D>& transfer, const Reals& displacement, double most) {
+  return POLDER_SIMD_CALL(shift_points, transfer, displacement, most);
+}
+
 std::shared_ptr<const void> make_law_handle(int dimension, const MaterialParameters& material, bool plastic) {
   return POLDER_SIMD_CALL(make_law_handle, dimension, material, plastic);
 }
 
 #define POLDER_INSTANTIATE(D)                                                                        \
   template void scatter_state<D>(Transfer<D>&, AffineKind, Reals&, Reals&);                          \
+  template void scatter_fluid<D>(Transfer<D>&, AffineKind, Reals&, Reals&);                          \
   template void scatter_cells<D>(Transfer<D>&, Reals&);                                              \
   template void update_velocities<D>(Transfer<D>&, double, const Reals&, const Reals&, const Reals&, \
                                      Reals&);                                                        \
@@ -84,6 +98,7 @@ std::shared_ptr<const void> make_law_handle(int dimension, const MaterialParamet
   template void update_pore_velocities<D>(Transfer<D>&, double, double, const Reals&, const Reals&,  \
                                           const Reals&, Reals*);                                     \
   template void gather_expelled<D>(Transfer<D>&, double, const Reals&, bool);                        \
+  template double shift_points<D>(Transfer<D>&, const Reals&, double);                               \
   template MoveResult update_stress_and_move<D>(Transfer<D>&, const MoveOptions&, const Reals*, const Reals&);
 POLDER_INSTANTIATE(2)
 POLDER_INSTANTIATE(3)

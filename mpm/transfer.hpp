@@ -35,6 +35,16 @@ struct Body {
   double bulk_modulus = 0;  // [Pa]
 };
 
+// Where soil and water have points of their own the eighth number of a node is what the cell around each
+// point makes of it: of_cell [slots] times the point's volume. Of soil that is the part of it which lies in
+// water, of water the drag of the pores [Pa s/m2].
+struct CellWeight {
+  const Reals* of_cell = nullptr;
+  // Of the volume only what grains, and the water that they retain, take up.
+  bool grains_only = false;
+  double retained_density = 0;  // of that water [kg/m3]
+};
+
 template <int D>
 struct Transfer {
   static constexpr int kTileSide = Grid<D>::kSide + 4;
@@ -48,6 +58,7 @@ struct Transfer {
   Space space = Space::plane_strain;
   ShapeKind shape = ShapeKind::gimp;
   std::vector<Body<D>> bodies;
+  CellWeight weight;
   Reals tiles;  // work space, kSum numbers a tile node
 
   // Room for all tiles after grid->activate().
@@ -58,6 +69,10 @@ struct Transfer {
 // of the nodes from their mass and momentum, zero where there is none [slots * kVector].
 template <int D>
 void scatter_state(Transfer<D>& transfer, AffineKind affine, Reals& sums, Reals& velocity);
+
+// The same of points of a fluid, which carry no stress: mass, momentum and weight.
+template <int D>
+void scatter_fluid(Transfer<D>& transfer, AffineKind affine, Reals& sums, Reals& velocity);
 
 // Particles to cells by the overlap of their domains: {V of wet soil, V of its solid, conductivity * V, mass
 // of the water in all soil, or where some is retained that} into cells [slots * kCellSum].
@@ -109,6 +124,11 @@ struct MoveResult {
 template <int D>
 MoveResult update_stress_and_move(Transfer<D>& transfer, const MoveOptions& options, const Reals* v_old,
                                   const Reals& v);
+
+// Moves the points by a displacement of the nodes [slots * kVector], which is linear in between, by at most
+// `most` along an axis; returns the largest such move [m].
+template <int D>
+double shift_points(Transfer<D>& transfer, const Reals& displacement, double most);
 
 // A law of the running vector level; keep the handle as long as kernels use it.
 std::shared_ptr<const void> make_law_handle(int dimension, const MaterialParameters& material, bool plastic);

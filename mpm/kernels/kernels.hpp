@@ -7,15 +7,18 @@
 
 #define POLDER_DECLARE_KERNELS(D)                                                                           \
   POLDER_SIMD_DECLARE(void, scatter_state, mpm::Transfer<D>&, mpm::AffineKind)                              \
+  POLDER_SIMD_DECLARE(void, scatter_fluid, mpm::Transfer<D>&, mpm::AffineKind)                              \
   POLDER_SIMD_DECLARE(void, scatter_cells, mpm::Transfer<D>&)                                               \
   POLDER_SIMD_DECLARE(void, scatter_pore_water, mpm::Transfer<D>&, double, bool)                            \
   POLDER_SIMD_DECLARE(void, sum_state, mpm::Transfer<D>&, Reals&, Reals&)                                   \
+  POLDER_SIMD_DECLARE(void, sum_fluid, mpm::Transfer<D>&, Reals&, Reals&)                                   \
   POLDER_SIMD_DECLARE(void, sum_momentum, mpm::Transfer<D>&, const Reals&, Reals&)                          \
   POLDER_SIMD_DECLARE(void, sum_cells, mpm::Transfer<D>&, Reals&)                                           \
   POLDER_SIMD_DECLARE(void, update_velocities, mpm::Transfer<D>&, double, const Reals&, const Reals&, bool) \
   POLDER_SIMD_DECLARE(void, update_pore_velocities, mpm::Transfer<D>&, double, double, const Reals&,        \
                       const Reals&, bool)                                                                   \
   POLDER_SIMD_DECLARE(void, gather_expelled, mpm::Transfer<D>&, double, const Reals&, bool)                 \
+  POLDER_SIMD_DECLARE(double, shift_points, mpm::Transfer<D>&, const Reals&, double)                        \
   POLDER_SIMD_DECLARE(mpm::MoveResult, update_stress_and_move, mpm::Transfer<D>&, const mpm::MoveOptions&,  \
                       const Reals*, const Reals&)
 

@@ -1,5 +1,5 @@
-// Nodes: sum of the private tiles that reach them, in fixed order; while a block's sums are in the cache, its
-// velocities.
+// Nodes: sum of the private tiles that reach them, in fixed order; and while a row's sums are in registers
+// the velocities.
 #include "core/threads.hpp"
 #include "mpm/kernels/tile.hpp"
 
@@ -25,9 +25,9 @@ POLDER_INLINE void add_row(const mpm::Transfer<D>& transfer, const int* blocks, 
   if (const double* behind = tile_row(blocks[2])) row[kSide - 1] += Reg<kWidth>::load(behind);
 }
 
-// finish(slot, sum): what else happens to a block, first slot and first sum.
-template <int D, int kWidth, class Finish>
-void sum_width(mpm::Transfer<D>& transfer, Reals& out, const Finish& finish) {
+// put(slot, row): what becomes of the sums of a row of nodes, the first of them `slot`.
+template <int D, int kWidth, class Put>
+void sum_width(const mpm::Transfer<D>& transfer, const Put& put) {
   constexpr int kSide = Grid<D>::kSide, kTile = mpm::Transfer<D>::kTileSide;
   const Grid<D>& grid = *transfer.grid;
   // The tile of a neighbour before (0), beside (1) or behind (2) along an axis covers this node of the block.
@@ -36,7 +36,6 @@ void sum_width(mpm::Transfer<D>& transfer, Reals& out, const Finish& finish) {
   };
   parallel_for(grid.blocks(), [&](int block) {
     const std::size_t slot = static_cast<std::size_t>(block) * Grid<D>::kCells;
-    double* sum = out.data() + slot * kWidth;
     const int* neighbours = grid.neighbours(block).data();
     for (int z = 0; z < (D == 3 ? kSide : 1); ++z)
       for (int y = 0; y < kSide; ++y) {
@@ -50,9 +49,8 @@ void sum_width(mpm::Transfer<D>& transfer, Reals& out, const Finish& finish) {
                                row);
           }
         }
-        for (int x = 0; x < kSide; ++x) row[x].store(sum + ((z * kSide + y) * kSide + x) * kWidth);
+        put(slot + static_cast<std::size_t>((z * kSide + y) * kSide), row);
       }
-    finish(slot, sum);
   });
 }
 
@@ -60,28 +58,49 @@ double inverse_of(double mass) {
   return mass > 0 ? 1 / mass : 0;
 }
 
+// Sum of a node with its mass in lane 0 and its momentum behind: sums and velocity.
+template <int D>
+POLDER_INLINE void put_state(const Reg<8>& sum, double* sums, double* velocity) {
+  sum.store(sums);
+  const double inverse = inverse_of(sums[0]);
+  Reg<8> momentum;
+  if constexpr (D == 2)
+    momentum = sum.template pick<1, 2, -1, -1, -1, -1, -1, -1>();
+  else
+    momentum = sum.template pick<1, 2, 3, -1, -1, -1, -1, -1>();
+  (momentum.template low<4>() * inverse).store(velocity);
+}
+
+// A fluid in the plane: mass, momentum and weight.
+POLDER_INLINE void put_fluid(const Reg<4>& sum, double* sums, double* velocity) {
+  static_assert(mpm::Transfer<2>::kVolume == 5);
+  sum.pick<0, 1, 2, -1>().store(sums);
+  sum.pick<-1, 3, -1, -1>().store(sums + 4);
+  (sum.pick<1, 2, -1, -1>() * inverse_of(sums[0])).store(velocity);
+}
+
 template <int D>
 void sum_state_of(mpm::Transfer<D>& transfer, Reals& sums, Reals& velocity) {
-  sum_width<D, 8>(transfer, sums, [&](std::size_t slot, const double* sum) {
-    for (int i = 0; i < Grid<D>::kCells; ++i, sum += 8) {
-      double* v = velocity.data() + (slot + i) * mpm::Transfer<D>::kVector;
-      const double inverse = inverse_of(sum[0]);
-      for (int d = 0; d < D; ++d) v[d] = sum[1 + d] * inverse;
-    }
+  sum_width<D, 8>(transfer, [&](std::size_t slot, const auto& row) {
+    for (int x = 0; x < Grid<D>::kSide; ++x)
+      put_state<D>(row[x], sums.data() + (slot + x) * 8, velocity.data() + (slot + x) * 4);
   });
 }
 
 template <int D>
 void sum_momentum_of(mpm::Transfer<D>& transfer, const Reals& sums, Reals& velocity) {
-  sum_width<D, 4>(transfer, velocity, [&](std::size_t slot, double* v) {
-    for (int i = 0; i < Grid<D>::kCells; ++i, v += 4)
-      (Reg<4>::load(v) * inverse_of(sums[(slot + i) * mpm::Transfer<D>::kSum])).store(v);
+  sum_width<D, 4>(transfer, [&](std::size_t slot, const auto& row) {
+    for (int x = 0; x < Grid<D>::kSide; ++x)
+      (row[x] * inverse_of(sums[(slot + x) * mpm::Transfer<D>::kSum]))
+          .store(velocity.data() + (slot + x) * 4);
   });
 }
 
 template <int D>
 void sum_cells_of(mpm::Transfer<D>& transfer, Reals& cells) {
-  sum_width<D, 4>(transfer, cells, [](std::size_t, const double*) {});
+  sum_width<D, 4>(transfer, [&](std::size_t slot, const auto& row) {
+    for (int x = 0; x < Grid<D>::kSide; ++x) row[x].store(cells.data() + (slot + x) * 4);
+  });
 }
 
 }  // namespace
@@ -90,6 +109,15 @@ void sum_state(mpm::Transfer<2>& transfer, Reals& sums, Reals& velocity) {
   sum_state_of(transfer, sums, velocity);
 }
 void sum_state(mpm::Transfer<3>& transfer, Reals& sums, Reals& velocity) {
+  sum_state_of(transfer, sums, velocity);
+}
+void sum_fluid(mpm::Transfer<2>& transfer, Reals& sums, Reals& velocity) {
+  sum_width<2, 4>(transfer, [&](std::size_t slot, const auto& row) {
+    for (int x = 0; x < Grid<2>::kSide; ++x)
+      put_fluid(row[x], sums.data() + (slot + x) * 8, velocity.data() + (slot + x) * 4);
+  });
+}
+void sum_fluid(mpm::Transfer<3>& transfer, Reals& sums, Reals& velocity) {
   sum_state_of(transfer, sums, velocity);
 }
 void sum_momentum(mpm::Transfer<2>& transfer, const Reals& sums, Reals& velocity) {

@@ -1,5 +1,7 @@
 // Nodes to particles: velocities of the skeleton and of the pore water that points carry, what of it flows
 // out of them.
+#include <algorithm>
+
 #include "core/threads.hpp"
 #include "mpm/kernels/gather_pack.hpp"
 
@@ -85,6 +87,40 @@ void update_velocities_of(mpm::Transfer<D>& t, const Phase& phase, double flip, 
   });
 }
 
+template <int D>
+double shift_points_of(mpm::Transfer<D>& t, const Reals& displacement, double most) {
+  const Grid<D>& grid = *t.grid;
+  thread_local std::vector<double> work;  // space of the calling thread, for all
+  std::vector<double>& far = work;
+  far.assign(grid.occupied_blocks(), 0.0);
+  parallel_for_work(work_of_blocks(t), [&](int block) {
+    alignas(64) double in[mpm::Transfer<D>::kTileNodes * kVectorLanes<D>];
+    load_tile<D, 1>(grid, block, {displacement.data()}, in);
+    const BlockFrame<D> frame(grid, block);
+    Pack largest = Pack{};
+    for (const mpm::Body<D>& body : t.bodies) {
+      ParticleSet<D>& set = *body.particles;
+      const auto range = set.ranges[block];
+      for (int p = range.first; p < range.first + range.count; p += kLanes) {
+        const Mask real = load(&set.mass[p]) > 0;
+        Pack x[D];
+        for (int d = 0; d < D; ++d) x[d] = load(&set.position[d][p]);
+        TileStencil<D> s;
+        s.set(frame, mpm::ShapeKind::linear, x, x);  // hats know no half sizes
+        Gathered<D> q;
+        gather_pack<D, 1, Want::gradient>(in, frame, s, x, grid.spacing(), q);
+        for (int d = 0; d < D; ++d) {
+          const Pack move = select(real, clamp(q.value[d], -most, most), Pack{});
+          store(&set.position[d][p], x[d] + move);
+          largest = max(largest, abs(move));
+        }
+      }
+    }
+    for (int l = 0; l < kLanes; ++l) far[block] = std::max(far[block], largest[l]);
+  });
+  return far.empty() ? 0.0 : *std::max_element(far.begin(), far.end());
+}
+
 // Of the points of a body in one cell.
 template <int D>
 struct CellSums {
@@ -156,6 +192,13 @@ void gather_expelled(mpm::Transfer<2>& t, double dt, const Reals& flow, bool mea
 }
 void gather_expelled(mpm::Transfer<3>& t, double dt, const Reals& flow, bool mean) {
   gather_expelled_of(t, dt, flow, mean);
+}
+
+double shift_points(mpm::Transfer<2>& t, const Reals& u, double most) {
+  return shift_points_of(t, u, most);
+}
+double shift_points(mpm::Transfer<3>& t, const Reals& u, double most) {
+  return shift_points_of(t, u, most);
 }
 
 }  // namespace polder::POLDER_SIMD_NAMESPACE
