@@ -54,6 +54,19 @@ void ParticleSet<D>::append(int n) {
 }
 
 template <int D>
+int ParticleSet<D>::insert(int block) {
+  const Range range = block < static_cast<int>(ranges.size()) ? ranges[block] : Range{};
+  int p = range.first;
+  while (p < range.first + range.count && id[p] >= 0) ++p;
+  if (p == range.first + range.count) return -1;
+  for (ParticleField& f : fields()) (*f.values)[p] = 0;
+  id[p] = next_id_++;
+  slot_of_id_.push_back(p);
+  ++count_;
+  return p;
+}
+
+template <int D>
 void ParticleSet<D>::remove(int p) {
   slot_of_id_[id[p]] = -1;
   id[p] = -1;

@@ -71,6 +71,9 @@ class ParticleSet {
   // Add points: give every array of fields() `n` more entries (zero); ids continue after all ids ever given.
   // They belong to no block before the next sort().
   void append(int n);
+  // A new point in a padding entry of the block it lies in, which belongs to that block as sorted ones do;
+  // returns its index, all arrays there zero, or -1 where the block has no entry to spare.
+  int insert(int block);
   // Take a point away: until the next sort() its entry stays as one of padding, at the same place.
   void remove(int p);
   // All arrays in use.

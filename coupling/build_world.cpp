@@ -228,8 +228,9 @@ template <int D>
 void add_water_layer(World<D>& world) {
   PoreWater<D>& water = *world.pore_water;
   const Scene& scene = world.scene;
-  water.layer = std::make_unique<WaterLayer<D>>(
-      world.skeleton.grid(), scene, water_walls<D>(scene, world.skeleton.boundaries()), water.cells);
+  water.layer = std::make_unique<WaterLayer<D>>(world.skeleton.grid(), scene,
+                                                water_walls<D>(scene, world.skeleton.boundaries()),
+                                                water.cells, water.pressure);
   water.cells.set_inclined_surfaces(true);
   seed_water(world);
   world.skeleton.attach(water.layer->fluid.points());

@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "core/threads.hpp"
+#include "coupling/layer_cells.hpp"
 #include "mpm/point_stencil.hpp"
 
 namespace polder::coupling {
 namespace {
 
 constexpr int kStride = 4;
-constexpr double kLeastPorosity = 0.05;
 
 template <int D>
 NodeDrag node_drag(const World<D>& world, int i, double dt, double floor) {
@@ -18,8 +18,8 @@ NodeDrag node_drag(const World<D>& world, int i, double dt, double floor) {
   const double* water = &layer.fluid.sums()[static_cast<std::size_t>(i) * 8];
   NodeDrag n{world.skeleton.sums()[static_cast<std::size_t>(i) * 8], water[0]};
   if (!(n.soil > world.skeleton.mass_floor() && n.water > floor)) return n;
-  n.b = dt * water[mpm::FluidLayer<D>::kDrag] / n.water;
-  if (!layer.relative_inertia && n.b > 0) n.tied = layer.tied[i];
+  const double b = dt * water[mpm::FluidLayer<D>::kDrag] / n.water;
+  n.set(b, !layer.relative_inertia && b > 0 ? layer.tied[i] : 0.0);
   return n;
 }
 
@@ -42,7 +42,7 @@ void find_tied_water(World<D>& world) {
       for (int d = 0; d < D; ++d) cell[d] -= corner >> d & 1;
       const int slot = grid.slot(cell);
       if (slot < 0) continue;
-      const double water = layer.sums[static_cast<std::size_t>(slot) * 4];
+      const double water = layer.water_volume[slot];
       in_pores += layer.in_pores[slot] * water, all += water;
     }
     if (all > 0) layer.tied[i] = in_pores / all;
@@ -64,9 +64,10 @@ void push_by_drag(World<D>& world, double end, double dt) {
       layer.grains[j] = trial[j];
   });
   skeleton.boundaries().apply(end, dt, skeleton.sums(), layer.grains, false, false);
+  layer.node_drag.resize(nodes.size());
   parallel_for(static_cast<int>(nodes.size()), [&](int k) {
     const int i = nodes[k];
-    const NodeDrag node = node_drag(world, i, dt, floor);
+    const NodeDrag node = layer.node_drag[k] = node_drag(world, i, dt, floor);
     for (int d = 0; d < D; ++d) {
       const std::size_t j = static_cast<std::size_t>(i) * kStride + d;
       const double own = layer.grains[j];  // where a boundary holds the grains
@@ -92,7 +93,7 @@ void share_drag(World<D>& world, double dt) {
   const std::vector<int>& nodes = layer.nodes;
   parallel_for(static_cast<int>(nodes.size()), [&](int k) {
     const int i = nodes[k];
-    const NodeDrag node = node_drag(world, i, dt, floor);
+    const NodeDrag& node = layer.node_drag[k];
     if (!layer.relative_inertia) layer.following[i] = node.following();
     const bool has_soil = node.soil > skeleton.mass_floor(), has_water = node.water > floor;
     const double* s = &skeleton.sums()[static_cast<std::size_t>(i) * 8];
@@ -113,9 +114,8 @@ void share_drag(World<D>& world, double dt) {
         continue;
       }
       if (!stopped) {
-        v /= node.carried(wall);
-        rs = (push_soil + (wall ? 0.0 : node.share() * node.water / node.soil * push_water)) /
-             node.carried(wall);
+        v = node.after(v, wall);
+        rs = node.after(push_soil + (wall ? 0.0 : node.share * node.ratio * push_water), wall);
       }
       if (wall) continue;
       // Grains that something stops are not accelerated, whatever velocity their points bring to the node.

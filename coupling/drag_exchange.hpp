@@ -23,6 +23,7 @@
 #include <cmath>
 
 #include "coupling/drag_law.hpp"
+#include "coupling/node_drag.hpp"
 #include "coupling/world.hpp"
 
 namespace polder::coupling {
@@ -33,35 +34,6 @@ double water_floor(const World<D>& world) {
   constexpr double kNoWater = 1e-26;  // as a share of a cell of water
   return kNoWater * world.scene.water.density * std::pow(world.scene.grid.cell, D);
 }
-
-// One node; components of velocities. fixed: a boundary gives the grains the velocity `own`; wall: one holds
-// the water's, and takes its momentum, so that grains drag on something immovable.
-struct NodeDrag {
-  double soil = 0, water = 0;  // masses [kg]
-  double b = 0;                // dt B / M_w; infinite: soil holds its water
-  double tied = 0;             // t
-
-  double share() const { return std::isinf(b) ? 1 : b / (1 - tied + b); }
-  // Trial velocity w~ of the water, from what it was and what the grains had; nothing is tied at a wall.
-  double trial(double w, double water_old, double grains_old, bool wall) const {
-    return wall ? w : w + tied * (grains_old - water_old);
-  }
-  // P - v~.
-  double push(double w, double own, bool fixed, bool wall) const {
-    if (wall) return fixed || std::isinf(b) ? 0 : b * water / soil * w;
-    return share() * water / soil * (w - (fixed ? own : 0.0));
-  }
-  // Mass that moves with grains which nothing holds, over their own: v = P over this.
-  double carried(bool wall) const {
-    if (wall) return std::isinf(b) ? 1 : 1 + b * water / soil;
-    return 1 + share() * water / soil;
-  }
-  double water_after(double w, double v) const {
-    return std::isinf(b) ? v : (w + (b - tied) * v) / (1 - tied + b);
-  }
-  // Change of the velocity of tied water with that of the grains.
-  double following() const { return b > 0 ? tied * (b - tied) / (1 - tied + b) : 0; }
-};
 
 // Share of the nodes' water that is in pores, WaterLayer::tied, from that of the cells around.
 template <int D>

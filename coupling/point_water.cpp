@@ -73,8 +73,8 @@ NodeDrag node_drag(const World<D>& world, int i, double dt, bool locked = false)
   const double n = porosity_of(s, world.scene.water.density);
   NodeDrag node{s.soil[0], s.water[0]};
   if (node.soil > world.skeleton.mass_floor() && node.water > water_floor(world))
-    node.b = locked ? std::numeric_limits<double>::infinity()
-                    : dt * n * n * world.unit_weight() * s.water[kVolume<D>] / node.water;
+    node.set(locked ? std::numeric_limits<double>::infinity()
+                    : dt * n * n * world.unit_weight() * s.water[kVolume<D>] / node.water);
   return node;
 }
 
@@ -155,7 +155,7 @@ void share_drag(World<D>& world, double dt, bool locked) {
       double& v = skeleton.v_new()[j];
       const bool stopped = (held[i] >> d & 1) || (v == 0 && w.grains[j] != 0);
       const bool wall = walled[i] >> d & 1;
-      if (!stopped) v /= node.carried(wall);
+      if (!stopped) v = node.after(v, wall);
       if (!wall) w.velocity[j] = node.water_after(w.velocity[j], v);
     }
   });

@@ -11,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "coupling/node_drag.hpp"
 #include "coupling/scene.hpp"
 #include "coupling/water_viscosity.hpp"
 #include "fdm/pressure_field.hpp"
@@ -44,11 +45,11 @@ struct UnsaturatedWater {
 template <int D>
 struct WaterLayer {
   WaterLayer(const Grid<D>& grid, const Scene& scene, mpm::BoundarySet<D> boundaries,
-             const fdm::WaterCells<D>& cells)
+             const fdm::WaterCells<D>& cells, fdm::PressureField<D>& pressure)
       : fluid(grid, scene.grid.space, scene.grid.shape,
               scene.numerics.water_transfer == Transfer::apic ? mpm::AffineKind::apic : mpm::AffineKind::none,
               scene.numerics.water_flip, std::move(boundaries)),
-        correction(cells),
+        correction(cells, pressure),
         relative_inertia(find_formulation(scene.formulation)->inertia == RelativeInertia::kept) {
     if (scene.water.viscous) viscosity = std::make_unique<WaterViscosity<D>>(grid, scene.water.viscosity);
   }
@@ -61,7 +62,8 @@ struct WaterLayer {
   // Cells (slots): volume of the water's points; that of the grains with the water they retain [m3]; share
   // taken by soil, its pores included; part of that soil which lies in water; resistance of the pores per
   // volume of water [Pa s/m2]; volume that has come in through open sides and has no point yet [m3].
-  Reals sums, grain_volume, soil_fill, submerged, drag, owed;
+  Reals water_volume, grain_volume, soil_fill, submerged, drag, owed;
+  Reals cell_volume;  // where cells differ (axisymmetry) [m3]
   // Where relative inertia is neglected, share of the water that is in pores: of cells, of nodes [-]; and
   // change of the nodes' velocity of water with that of the grains.
   Reals in_pores, tied, following;
@@ -69,10 +71,11 @@ struct WaterLayer {
   std::vector<int> nodes, found_nodes;  // the latter: work space
   // Nodes (slots * 4): velocities with drag exchanged and their responses to a unit pressure gradient.
   Reals grains, water, grains_response, water_response;
-  Reals divergence, face_mobility;  // of cells and faces, see fdm/mixture_flow.hpp
-  Reals specific_volume;            // of faces, where pressure is explicit: mobility over the step [m3/kg]
-  Reals displacement;               // of the nodes, that takes the drift out of the volumes [m]
-  std::vector<Reals> fluidised;     // bodies, by the number of the point: 1 where it is (fluidisation.hpp)
+  Reals divergence, face_flow, face_mobility;  // of cells and faces, see fdm/mixture_flow.hpp
+  std::vector<NodeDrag> node_drag;             // of `nodes`
+  Reals specific_volume;         // of faces, where pressure is explicit: mobility over the step [m3/kg]
+  Reals displacement;            // of the nodes, that takes the drift out of the volumes [m]
+  std::vector<Reals> fluidised;  // bodies, by the number of the point: 1 where it is (fluidisation.hpp)
   fdm::Discharge discharge;
   bool held = false;              // by the soil, while it relaxes
   double added = 0, removed = 0;  // volume of the points that came and went through open sides [m3]

@@ -9,6 +9,7 @@
 #include "coupling/explicit_water.hpp"
 #include "coupling/fluidisation.hpp"
 #include "coupling/initial_state.hpp"
+#include "coupling/layer_cells.hpp"
 #include "coupling/point_water.hpp"
 #include "coupling/stopwatch.hpp"
 #include "fdm/mixture_flow.hpp"
@@ -17,7 +18,6 @@ namespace polder::coupling {
 namespace {
 
 constexpr int kStride = 4;
-constexpr double kLeastPorosity = 0.05;
 constexpr int kDriftInterval = 8;    // steps between two corrections of the water's volume
 constexpr double kDriftShare = 0.3;  // of the drift that one of them takes back
 constexpr int kWettingInterval = 8;  // steps between two looks for soil that water has reached
@@ -179,7 +179,7 @@ void take_back_drift(World<D>& world) {
   Reals& excess = layer.divergence;  // work space
   excess.assign(grid.slots(), 0.0);
   for (const fdm::ActiveCell<D>& cell : w.cells.cells()) {
-    const double water = layer.sums[static_cast<std::size_t>(cell.slot) * 4];
+    const double water = layer.water_volume[cell.slot];
     excess[cell.slot] = (layer.grain_volume[cell.slot] + water) / cell.volume - 1;
   }
   layer.correction.solve(excess, w.porosity, kDriftShare, layer.displacement);
@@ -194,51 +194,29 @@ void update_layer_cells(World<D>& world) {
   PoreWater<D>& w = *world.pore_water;
   WaterLayer<D>& layer = *w.layer;
   const Grid<D>& grid = world.skeleton.grid();
-  layer.fluid.scatter_cells(layer.sums);
+  layer.fluid.scatter_volume(layer.water_volume);
   const std::size_t slots = grid.slots();
   for (Reals* r : {&layer.drag, &layer.soil_fill, &layer.submerged, &layer.grain_volume}) r->resize(slots);
   if (!layer.relative_inertia) layer.in_pores.resize(slots);
-  const double cell_volume = std::pow(grid.spacing(), D), unit_weight = world.unit_weight();
-  const bool radial = world.scene.grid.space == Space::axisymmetric;
-  const bool follows_porosity = world.scene.kozeny_carman(), retains = world.scene.retains_water();
-  const double density = world.scene.water.density, per_density = 1 / density;
-  parallel_for(grid.slots(), [&](int i) {
-    const double* s = &w.cell_sums[static_cast<std::size_t>(i) * 4];
-    const double grains = layer.grain_volume[i] = s[1] + (retains ? s[3] * per_density : 0.0);
-    const double water = layer.sums[static_cast<std::size_t>(i) * 4];
-    w.darcy_mobility[i] = 0;
-    if (s[0] == 0 && grains == 0 && water == 0) {
-      w.fill[i] = layer.soil_fill[i] = layer.submerged[i] = layer.drag[i] = 0;
-      w.porosity[i] = 1;
-      if (!layer.relative_inertia) layer.in_pores[i] = 0;
-      return;
-    }
-    double volume = cell_volume;
-    if (radial) volume *= grid.origin()[0] + (grid.index(i)[0] + 0.5) * grid.spacing();
-    const bool some = s[0] > 1e-9 * volume;
-    const double soil_fill = s[0] / volume;
-    const double pores = some ? std::clamp(1 - grains / s[0], kLeastPorosity, 1.0) : 1.0;  // of soil, for it
-    // Water fills the pores first, then the space beside and above the soil.
-    const double room = pores * soil_fill * volume;
-    w.fill[i] = water <= room ? water / (pores * volume) : std::min(soil_fill, 1.0) + (water - room) / volume;
-    // Of the mixture: of soil where it ends with the water, of both where water stands above it.
-    const double mixture = volume * std::clamp(std::max(soil_fill, w.fill[i]), 1e-9, 1.0);
-    w.porosity[i] = std::clamp(1 - grains / mixture, kLeastPorosity, 1.0);
-    const double own = layer.soil_fill[i] = std::min(soil_fill, 1.0);
-    // Pressure pushes the grains of the soil that lies in water.
-    layer.submerged[i] = own > 0 ? std::min(1.0, w.fill[i] / own) : 0.0;
-    double conductivity = some ? s[2] / s[0] : 0.0;
-    if (some && follows_porosity)
-      conductivity *= kozeny_carman(std::clamp(1 - s[1] / s[0], kLeastPorosity, 1.0));
-    // What makes the head lost across a layer of soil in the cell right: its share of the mixture, and water
-    // that is slower by the ratio of the porosities than in the layer.
-    const double layer_share = std::min(1.0, soil_fill * volume / mixture) * w.porosity[i] / pores;
-    layer.drag[i] = conductivity > 0 ? layer_share * pores * unit_weight / conductivity : 0.0;
-    if (!layer.relative_inertia) {
-      const double of_mixture = std::min(1.0, soil_fill * volume / mixture) * pores / w.porosity[i];
-      layer.in_pores[i] = conductivity > 0 ? std::min(1.0, of_mixture) : 0.0;
-    }
-  });
+  const double density = world.scene.water.density, cell_volume = std::pow(grid.spacing(), D);
+  LayerCells c{};
+  c.soil = w.cell_sums.data(), c.water = layer.water_volume.data(), c.slots = grid.slots();
+  c.cell_volume = cell_volume, c.unit_weight = world.unit_weight();
+  if (world.scene.grid.space == Space::axisymmetric) {
+    layer.cell_volume.resize(slots);
+    parallel_for(grid.slots(), [&](int i) {
+      layer.cell_volume[i] = cell_volume * (grid.origin()[0] + (grid.index(i)[0] + 0.5) * grid.spacing());
+    });
+    c.volumes = layer.cell_volume.data();
+  }
+  c.per_density = world.scene.retains_water() ? 1 / density : 0.0;
+  c.kozeny_carman = world.scene.kozeny_carman();
+  c.fill = w.fill.data(), c.porosity = w.porosity.data();
+  c.soil_fill = layer.soil_fill.data(), c.submerged = layer.submerged.data();
+  c.drag = layer.drag.data(), c.grain_volume = layer.grain_volume.data();
+  if (!layer.relative_inertia) c.in_pores = layer.in_pores.data();
+  POLDER_SIMD_CALL(find_layer_cells, c);
+  std::fill(w.darcy_mobility.begin(), w.darcy_mobility.end(), 0.0);  // water has a velocity of its own
   layer.fluid.set_cell_drag(layer.drag);
   // All of the soil where it holds its water.
   world.skeleton.set_cell_weight({&layer.submerged, !layer.held, density});
@@ -283,7 +261,8 @@ mpm::MoveResult step_two_layer(World<D>& world, const StepInput& in, long step) 
   push_by_pressure(world);  // leaves grad p^n at the nodes
   skeleton.predict(in.dt, gravity, in.damping, &w.acceleration);
   predict_water<D>(world, end, in.dt, gravity);
-  if (layer.viscosity) layer.viscosity->diffuse(layer.fluid, layer.sums, in.dt, layer.fluid.velocity());
+  if (layer.viscosity)
+    layer.viscosity->diffuse(layer.fluid, layer.water_volume, in.dt, layer.fluid.velocity());
   if (!layer.relative_inertia) find_tied_water(world);
   push_by_drag(world, end, in.dt);
   skeleton.constrain(end, in.dt);
@@ -292,8 +271,7 @@ mpm::MoveResult step_two_layer(World<D>& world, const StepInput& in, long step) 
     Stopwatch watch(w.wall_seconds);
     complete_velocities(world, skeleton.strain_velocity(end, in.dt));
     const fdm::MixtureMotion motion = motion_of(w, layer.grains, layer.water);
-    fdm::mixture_divergence(w.cells, motion, layer.divergence);
-    fdm::mixture_mobility(w.cells, motion, layer.face_mobility);
+    fdm::mixture_flow(w.cells, motion, layer.face_flow, layer.face_mobility, layer.divergence);
     if (w.compressible) {
       advance_mixture(world, in.dt);
     } else {

@@ -210,12 +210,16 @@ std::vector<int> nearest_points(const World<D>& world, const fdm::BoundaryFace<D
   const ParticleSet<D>& set = world.pore_water->layer->fluid.points();
   const fdm::ActiveCell<D>& cell = world.pore_water->cells.cells()[face.cell];
   std::vector<int> found;
-  const auto range = set.ranges[cell.slot / Grid<D>::kCells];
+  const int block = cell.slot / Grid<D>::kCells;
+  if (block >= grid.occupied_blocks()) return found;
+  const auto range = set.ranges[block];
+  const Point<D> low = grid.position(cell.index);
+  const double h = grid.spacing();
   for (int p = range.first; p < range.first + range.count; ++p) {
-    bool inside = set.id[p] >= 0;
+    bool inside = true;
     for (int d = 0; d < D && inside; ++d)
-      inside = static_cast<int>((set.position[d][p] - grid.origin()[d]) / grid.spacing()) == cell.index[d];
-    if (inside) found.push_back(p);
+      inside = set.position[d][p] >= low[d] && set.position[d][p] < low[d] + h;
+    if (inside && set.id[p] >= 0) found.push_back(p);
   }
   std::sort(found.begin(), found.end(), [&](int a, int b) {
     const double x = face.outward * set.position[face.axis][a], y = face.outward * set.position[face.axis][b];
@@ -226,6 +230,7 @@ std::vector<int> nearest_points(const World<D>& world, const fdm::BoundaryFace<D
 
 template <int D>
 struct Arrival {
+  int slot;  // of its cell
   Point<D> position{}, velocity{};
   double volume = 0;
 };
@@ -238,7 +243,7 @@ Arrival<D> arrive(const World<D>& world, const fdm::BoundaryFace<D>& face, const
   const ParticleSet<D>& set = layer.fluid.points();
   const fdm::ActiveCell<D>& cell = world.pore_water->cells.cells()[face.cell];
   const int lanes = static_cast<int>(std::lround(grid.spacing() / layer.spacing));
-  Arrival<D> made;
+  Arrival<D> made{.slot = cell.slot};
   double emptiest = -1;
   for (int lane = 0; lane < ipow(lanes, D - 1); ++lane) {
     Point<D> x;
@@ -267,21 +272,22 @@ template <int D>
 void append(World<D>& world, const std::vector<Arrival<D>>& arrivals) {
   WaterLayer<D>& layer = *world.pore_water->layer;
   ParticleSet<D>& set = layer.fluid.points();
-  const int first = set.slots();
-  set.append(static_cast<int>(arrivals.size()));
-  set.wet.resize(set.slots(), 1.0);
-  for (std::size_t k = 0; k < arrivals.size(); ++k) {
-    const int p = first + static_cast<int>(k);
+  for (const Arrival<D>& arrival : arrivals) {
+    int p = set.insert(arrival.slot / Grid<D>::kCells);
+    if (p < 0) {
+      p = set.slots();
+      set.append(1);
+      world.skeleton.add_travel(1);  // the next step sorts it in
+    }
     for (int d = 0; d < D; ++d) {
-      set.position[d][p] = set.initial_position[d][p] = arrivals[k].position[d];
-      set.velocity[d][p] = arrivals[k].velocity[d];
+      set.position[d][p] = set.initial_position[d][p] = arrival.position[d];
+      set.velocity[d][p] = arrival.velocity[d];
       set.half_size[d][p] = 0.5 * layer.spacing;
     }
     set.wet[p] = 1;
-    set.volume[p] = arrivals[k].volume;
-    set.mass[p] = arrivals[k].volume * world.scene.water.density;
+    set.volume[p] = arrival.volume;
+    set.mass[p] = arrival.volume * world.scene.water.density;
   }
-  world.skeleton.add_travel(1);  // the next step sorts them in
 }
 
 }  // namespace

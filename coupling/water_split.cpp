@@ -22,6 +22,22 @@ int main_direction(const ParticleSet<D>& set, int p) {
   return along;
 }
 
+// Block that the last sort put a point into.
+template <int D>
+int block_of(const ParticleSet<D>& set, int p) {
+  const auto after = std::upper_bound(set.ranges.begin(), set.ranges.end(), p,
+                                      [](int slot, const auto& range) { return slot < range.first; });
+  return static_cast<int>(after - set.ranges.begin()) - 1;
+}
+
+// How far a place lies outside a block along an axis [cells]; what points may do is bounded by how far all of
+// them may have travelled.
+template <int D>
+double outside(const Grid<D>& grid, int block, double x, int axis) {
+  const double at = (x - grid.origin()[axis]) / grid.spacing() - grid.block_origin(block)[axis];
+  return std::max({0.0, -at, at - Grid<D>::kSide});
+}
+
 }  // namespace
 
 // A point that is too large for where it is, or for where it will be a spacing further on, becomes two of
@@ -56,22 +72,27 @@ void split_points(World<D>& world) {
     if (split) large.push_back(p);
   }
   if (large.empty()) return;
-  const int first = set.slots();
-  set.append(static_cast<int>(large.size()));
-  for (const ParticleField& f : set.fields())
-    for (std::size_t k = 0; k < large.size(); ++k)
-      (*f.values)[static_cast<std::size_t>(first) + k] = (*f.values)[large[k]];
-  for (std::size_t k = 0; k < large.size(); ++k) {
-    const int p = large[k], q = first + static_cast<int>(k);
+  for (const int p : large) {
     const int along = main_direction(set, p);
     const double low = grid.origin()[along], high = low + grid.cells()[along] * grid.spacing();
     const double step = std::min(
         {0.25 * layer.spacing, 0.5 * (set.position[along][p] - low), 0.5 * (high - set.position[along][p])});
-    set.position[along][p] -= step, set.position[along][q] += step;
+    const int block = block_of(set, p);
+    set.position[along][p] += step;
+    const int slot = grid.slot(set.cell_of(grid, p));
+    int q = slot < 0 ? -1 : set.insert(slot / Grid<D>::kCells);
+    if (q < 0) {
+      q = set.slots();
+      set.append(1);
+      world.skeleton.add_travel(1);  // the next step sorts it in
+    }
+    for (const ParticleField& f : set.fields()) (*f.values)[q] = (*f.values)[p];
+    set.position[along][p] -= 2 * step;
+    world.skeleton.add_travel(
+        std::max(0.0, outside(grid, block, set.position[along][p], along) - world.skeleton.travelled()));
     set.volume[p] = set.volume[q] = 0.5 * set.volume[p];
     set.mass[p] = set.mass[q] = set.volume[p] * world.scene.water.density;
   }
-  world.skeleton.add_travel(1);  // the next step sorts them in
 }
 
 template void split_points<2>(World<2>&);

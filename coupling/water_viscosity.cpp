@@ -137,7 +137,7 @@ void WaterViscosity<D>::diffuse(const mpm::FluidLayer<D>& fluid, const Reals& vo
   follow_grid(fluid);
   const double h = grid_.spacing(), cell_volume = std::pow(h, D), unit = dt * viscosity_ * std::pow(h, D - 2);
   parallel_for(grid_.slots(), [&](int i) {
-    share_[i] = unit * std::clamp(volume[static_cast<std::size_t>(i) * 4] / cell_volume, 0.0, 1.0);
+    share_[i] = unit * std::clamp(volume[i] / cell_volume, 0.0, 1.0);
     mass_[i] = fluid.sums()[static_cast<std::size_t>(i) * 8];
   });
   parallel_for(grid_.slots(), [&](int i) {

@@ -27,8 +27,8 @@ class WaterViscosity {
  public:
   WaterViscosity(const Grid<D>& grid, double viscosity) : grid_(grid), viscosity_(viscosity) {}
 
-  // Velocities [slots * 4] after dt of viscous stress. volume: of the water in each cell, every fourth
-  // number. Throws NumericalError where the iteration does not end.
+  // Velocities [slots * 4] after dt of viscous stress. volume: of the water in each cell
+  // [slots]. Throws NumericalError where the iteration does not end.
   void diffuse(const mpm::FluidLayer<D>& fluid, const Reals& volume, double dt, Reals& velocity);
 
   int iterations() const { return iterations_; }  // of the last call

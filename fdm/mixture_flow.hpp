@@ -23,13 +23,11 @@ struct MixtureMotion {
   std::span<const double> porosity;                         // of the cells: volume not taken by grains [-]
 };
 
-// Volume flow out of each active cell [m3/s].
+// Volume flow along the axis through each face, interior ones first [m3/s], and its mobility [m3 s/kg]; of
+// each active cell the sum of the flows out of it, moving walls included [m3/s].
 template <int D>
-void mixture_divergence(const WaterCells<D>& cells, const MixtureMotion& motion, Reals& out);
-
-// Mobility of each face, interior ones first [m3 s/kg].
-template <int D>
-void mixture_mobility(const WaterCells<D>& cells, const MixtureMotion& motion, Reals& out);
+void mixture_flow(const WaterCells<D>& cells, const MixtureMotion& motion, Reals& flow, Reals& mobility,
+                  Reals& divergence);
 
 // Volume flow outwards through one boundary face [m3/s].
 template <int D>

@@ -48,7 +48,7 @@ PressureField<D>::~PressureField() = default;
 
 template <int D>
 const char* PressureField<D>::solver_name() const {
-  return solver_->name();
+  return solved_by_ != nullptr ? solved_by_ : solver_->name();
 }
 
 template <int D>
@@ -102,6 +102,7 @@ void PressureField<D>::refresh() {
   for (const InteriorFace<D>& f : cells_.interior_faces())
     connectivity.links.push_back({f.low, f.high, f.axis});
   solver_->analyse(connectivity);
+  solved_by_ = nullptr;
 }
 
 // A cell without a pressure of its own takes the mean of what surrounds it, weighted with the inverse of the
@@ -292,6 +293,7 @@ SolveReport PressureField<D>::solve_increment() {
   const SystemValues system{
       sink_, std::span<const double>(conductance_).first(cells_.interior_faces().size()), rhs_};
   const SolveReport report = solver_->solve(system, accuracy_, x_);
+  solved_by_ = solver_->name();
   for_each(cells_.count(), [&](int c) {
     dp_[cells[c].slot] = x_[c];
     p_[cells[c].slot] += x_[c];

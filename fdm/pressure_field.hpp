@@ -147,6 +147,11 @@ class PressureField {
   // left.
   WaterBalance balance(std::span<const double> velocity) const;
 
+  // What refresh() has found, for other fields in the same cells.
+  NodeGradient<D>& gradient() { return gradient_; }
+  const Basins& basins() const { return basins_; }
+  LinearSolver<D>& solver() { return *solver_; }
+
   const char* solver_name() const;
   int pinned_basins() const { return pinned_; }  // in the last solution
 
@@ -165,6 +170,7 @@ class PressureField {
   const WaterCells<D>& cells_;
   WaterProperties<D> water_;
   std::unique_ptr<LinearSolver<D>> solver_;
+  const char* solved_by_ = nullptr;
   Accuracy accuracy_;
   NodeGradient<D> gradient_;
   std::uint64_t grid_revision_ = 0;

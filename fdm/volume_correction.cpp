@@ -14,11 +14,8 @@ constexpr double kTolerance = 1e-3;      // the next correction takes what this 
 }  // namespace
 
 template <int D>
-VolumeCorrection<D>::VolumeCorrection(const WaterCells<D>& cells)
-    : cells_(cells), solver_(make_solver<D>(SolverKind::automatic)) {}
-
-template <int D>
-VolumeCorrection<D>::~VolumeCorrection() = default;
+VolumeCorrection<D>::VolumeCorrection(const WaterCells<D>& cells, PressureField<D>& pressure)
+    : cells_(cells), pressure_(pressure) {}
 
 template <int D>
 void VolumeCorrection<D>::refresh() {
@@ -27,16 +24,9 @@ void VolumeCorrection<D>::refresh() {
   for (BoundaryFace<D>& f : faces_) f.open = f.free_surface || f.outside >= 0;
   if (revision_ == cells_.revision()) return;
   revision_ = cells_.revision();
-  gradient_.build(cells_);
-  basins_ = find_basins(cells_);
   edge_.assign(cells_.count(), 0);
   for (const BoundaryFace<D>& f : faces_)
     if (f.open) edge_[f.cell] = 1;
-  Connectivity<D> connectivity;
-  for (const ActiveCell<D>& c : cells_.cells()) connectivity.cells.push_back(c.index);
-  for (const InteriorFace<D>& f : cells_.interior_faces())
-    connectivity.links.push_back({f.low, f.high, f.axis});
-  solver_->analyse(connectivity);
 }
 
 template <int D>
@@ -46,6 +36,7 @@ void VolumeCorrection<D>::solve(std::span<const double> excess, std::span<const 
   const Grid<D>& grid = cells_.grid();
   const auto cells = cells_.cells();
   const auto interior = cells_.interior_faces();
+  const Basins& basins = pressure_.basins();
   const int n = cells_.count();
   displacement.assign(static_cast<std::size_t>(grid.slots()) * kStride, 0.0);
   if (n == 0) return;
@@ -55,24 +46,25 @@ void VolumeCorrection<D>::solve(std::span<const double> excess, std::span<const 
   for (const BoundaryFace<D>& f : faces_)
     if (f.open) sink_[f.cell] += f.area / f.distance;
   // A basin without a surface keeps its volume: what all its cells have too much cannot go anywhere.
-  std::vector<double> total(basins_.first_cell.size(), 0.0), volume(total), open(total);
+  std::vector<double> total(basins.first_cell.size(), 0.0), volume(total), open(total);
   for (int c = 0; c < n; ++c) {
     const ActiveCell<D>& cell = cells[c];
     const double e = edge_[c] ? std::max(0.0, excess[cell.slot]) : excess[cell.slot];
     rhs_[c] = share * std::clamp(e, -kLargestExcess, kLargestExcess) * cell.volume;
-    const int b = basins_.of_cell[c];
+    const int b = basins.of_cell[c];
     total[b] += rhs_[c], volume[b] += cell.volume, open[b] += sink_[c];
   }
   for (int c = 0; c < n; ++c) {
-    const int b = basins_.of_cell[c];
+    const int b = basins.of_cell[c];
     if (open[b] > 0) continue;
     rhs_[c] -= total[b] / volume[b] * cells[c].volume;
-    if (basins_.first_cell[b] == c) sink_[c] = 1;
+    if (basins.first_cell[b] == c) sink_[c] = 1;
   }
-  solver_->solve({sink_, link_, rhs_}, {.tolerance = kTolerance, .floor = 1e-300}, x_);
+  pressure_.solver().solve({sink_, link_, rhs_}, {.tolerance = kTolerance, .floor = 1e-300}, x_);
   psi_.assign(grid.slots(), 0.0);
   for (int c = 0; c < n; ++c) psi_[cells[c].slot] = x_[c];
-  gradient_.evaluate(cells_, faces_, psi_, BoundaryValues::homogeneous, WallNormal::none, displacement);
+  pressure_.gradient().evaluate(cells_, faces_, psi_, BoundaryValues::homogeneous, WallNormal::none,
+                                displacement);
   // Porosity at the nodes: mean of the cells that meet there.
   psi_.assign(grid.slots(), 0.0);
   weight_.assign(grid.slots(), 0.0);

@@ -9,13 +9,12 @@
 // answers a drift of a per cent with huge pressures where soil conducts badly.)
 #pragma once
 
-#include <memory>
 #include <span>
 
 #include "core/aligned.hpp"
 #include "fdm/cell_operators.hpp"
 #include "fdm/linear_system.hpp"
-#include "fdm/node_gradient.hpp"
+#include "fdm/pressure_field.hpp"
 #include "fdm/water_cells.hpp"
 
 namespace polder::fdm {
@@ -25,9 +24,9 @@ class VolumeCorrection {
  public:
   static constexpr int kStride = NodeGradient<D>::kStride;
 
-  // `cells` must outlive the correction.
-  explicit VolumeCorrection(const WaterCells<D>& cells);
-  ~VolumeCorrection();
+  // `cells`, and the field of pressure in them, must outlive the correction; PressureField::refresh() comes
+  // before solve().
+  VolumeCorrection(const WaterCells<D>& cells, PressureField<D>& pressure);
 
   // excess: volume of grains and water over that of the cell, minus one [-]; porosity: volume not taken by
   // grains [-]; both over slots. Beside free surfaces, where cells need not be full, only positive excess
@@ -39,12 +38,10 @@ class VolumeCorrection {
   void refresh();
 
   const WaterCells<D>& cells_;
-  std::unique_ptr<LinearSolver<D>> solver_;
-  NodeGradient<D> gradient_;
+  PressureField<D>& pressure_;  // lends its lists of faces and basins and its solver
   std::uint64_t revision_ = 0;
   std::vector<BoundaryFace<D>> faces_;  // of the cells, open sides closed
   std::vector<unsigned char> edge_;     // cells beside a surface
-  Basins basins_;
   Reals sink_, link_, rhs_, x_, psi_, weight_;
 };
 

@@ -38,8 +38,8 @@ class FluidLayer {
   // Room for the nodal fields after the grid has changed; harmless otherwise.
   void follow_grid();
   void scatter();
-  // Volume of the fluid in cells by the overlap of the points' domains, {V, V, -, -} [slots * 4].
-  void scatter_cells(Reals& cells) { mpm::scatter_cells(transfer_, cells); }
+  // Volume of the fluid in cells by the overlap of the points' domains [slots].
+  void scatter_volume(Reals& cells) { mpm::scatter_volume(transfer_, cells); }
   // Drag of a unit of volume of the fluid in each cell, for scatter() [slots, Pa s/m2]; must outlive it.
   void set_cell_drag(const Reals& drag) { transfer_.weight.of_cell = &drag; }
   void set_flip(double flip) { flip_ = flip; }

@@ -48,6 +48,13 @@ void scatter_cells(Transfer<D>& transfer, Reals& cells) {
 }
 
 template <int D>
+void scatter_volume(Transfer<D>& transfer, Reals& cells) {
+  POLDER_SIMD_CALL(scatter_volume, transfer);
+  fit(transfer, 1, cells);
+  POLDER_SIMD_CALL(sum_volume, transfer, cells);
+}
+
+template <int D>
 void update_velocities(Transfer<D>& transfer, double flip, const Reals& v_old, const Reals& v_new,
                        const Reals& sums, Reals& mapped) {
   POLDER_SIMD_CALL(update_velocities, transfer, flip, v_old, v_new, true);
@@ -92,6 +99,7 @@ std::shared_ptr<const void> make_law_handle(int dimension, const MaterialParamet
   template void scatter_state<D>(Transfer<D>&, AffineKind, Reals&, Reals&);                          \
   template void scatter_fluid<D>(Transfer<D>&, AffineKind, Reals&, Reals&);                          \
   template void scatter_cells<D>(Transfer<D>&, Reals&);                                              \
+  template void scatter_volume<D>(Transfer<D>&, Reals&);                                             \
   template void update_velocities<D>(Transfer<D>&, double, const Reals&, const Reals&, const Reals&, \
                                      Reals&);                                                        \
   template void scatter_pore_water<D>(Transfer<D>&, double, bool, Reals&, Reals&);                   \

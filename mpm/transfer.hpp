@@ -79,6 +79,10 @@ void scatter_fluid(Transfer<D>& transfer, AffineKind affine, Reals& sums, Reals&
 template <int D>
 void scatter_cells(Transfer<D>& transfer, Reals& cells);
 
+// The same of points of a fluid: their volume alone [slots].
+template <int D>
+void scatter_volume(Transfer<D>& transfer, Reals& cells);
+
 // Particle velocities from nodal ones,
 //   v_p = flip (v_p + sum N (v_new - v_old)) + (1 - flip) sum N v_new,
 // and the velocities of the nodes that their momenta give, with the mass in `sums` (MUSL).

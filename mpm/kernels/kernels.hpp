@@ -9,11 +9,13 @@
   POLDER_SIMD_DECLARE(void, scatter_state, mpm::Transfer<D>&, mpm::AffineKind)                              \
   POLDER_SIMD_DECLARE(void, scatter_fluid, mpm::Transfer<D>&, mpm::AffineKind)                              \
   POLDER_SIMD_DECLARE(void, scatter_cells, mpm::Transfer<D>&)                                               \
+  POLDER_SIMD_DECLARE(void, scatter_volume, mpm::Transfer<D>&)                                              \
   POLDER_SIMD_DECLARE(void, scatter_pore_water, mpm::Transfer<D>&, double, bool)                            \
   POLDER_SIMD_DECLARE(void, sum_state, mpm::Transfer<D>&, Reals&, Reals&)                                   \
   POLDER_SIMD_DECLARE(void, sum_fluid, mpm::Transfer<D>&, Reals&, Reals&)                                   \
   POLDER_SIMD_DECLARE(void, sum_momentum, mpm::Transfer<D>&, const Reals&, Reals&)                          \
   POLDER_SIMD_DECLARE(void, sum_cells, mpm::Transfer<D>&, Reals&)                                           \
+  POLDER_SIMD_DECLARE(void, sum_volume, mpm::Transfer<D>&, Reals&)                                          \
   POLDER_SIMD_DECLARE(void, update_velocities, mpm::Transfer<D>&, double, const Reals&, const Reals&, bool) \
   POLDER_SIMD_DECLARE(void, update_pore_velocities, mpm::Transfer<D>&, double, double, const Reals&,        \
                       const Reals&, bool)                                                                   \

@@ -1,4 +1,4 @@
-// Particles to nodes and cells.
+// Particles to nodes.
 //
 // With the stencil's weights N_i = w0 w1 (w2), node i gets
 //   m_i += N m,   p_i += N m (v + C (x_i - x_p)),   f_i += N f_ext - V sigma grad N,   V_i += N V.
@@ -342,66 +342,6 @@ void scatter_water(mpm::Transfer<D>& transfer, double density, bool kozeny_carma
       [](const ParticleSet<D>& set) { return !set.pore_pressure.empty(); });
 }
 
-// Overlap of the particle's box with cells along one axis: the lower cell and the share of the box inside it.
-POLDER_INLINE void overlap(Pack x, Pack l, Mask& cell, Pack& lower) {
-  cell = floor_to_int(x - l);
-  lower = clamp((to_real(cell) + 1.0 - (x - l)) / (2.0 * l), 0.0, 1.0);
-}
-
-template <int D>
-void scatter_cells_of(mpm::Transfer<D>& transfer) {
-  constexpr int kTileNodes = mpm::Transfer<D>::kTileNodes, kTile = mpm::Transfer<D>::kTileSide;
-  const Grid<D>& grid = *transfer.grid;
-  parallel_for_work(work_of_blocks(transfer), [&](int block) {
-    double* tile = transfer.tiles.data() + static_cast<std::size_t>(block) * kTileNodes * 4;
-    std::memset(tile, 0, sizeof(double) * kTileNodes * 4);
-    const BlockFrame<D> frame(grid, block);
-    for (const mpm::Body<D>& body : transfer.bodies) {
-      const ParticleSet<D>& set = *body.particles;
-      if (set.wet.empty()) continue;  // a body without pores
-      const auto range = set.ranges[block];
-      for (int p = range.first; p < range.first + range.count; p += kLanes) {
-        const Pack solid = load(&set.mass[p]), volume = select(solid > 0, load(&set.volume[p]), Pack{});
-        const Pack wet = load(&set.wet[p]) * volume;
-        const Pack grains = solid * (1 / set.density_solid);
-        Pack fields[4] = {wet, load(&set.wet[p]) * grains};
-        if (!set.conductivity.empty()) fields[2] = wet * load(&set.conductivity[p]);
-        if (!set.retained_water.empty())
-          fields[3] = load(&set.retained_water[p]);
-        else if (!set.pore_water.empty())
-          fields[3] = load(&set.pore_water[p]) * (volume - grains);
-        Reg<4> node[kLanes];
-        to_nodes<4>(fields, node);
-        Mask start = Mask{};
-        alignas(64) double share[D][2][kLanes];
-        for (int d = D - 1; d >= 0; --d) {
-          Mask cell;
-          Pack lower;
-          const Pack x = (load(&set.position[d][p]) - frame.origin[d]) * frame.inverse_h;
-          // A box never reaches beyond the grid's sides: what would stick out counts inside.
-          const Pack l = min(load(&set.half_size[d][p]) * frame.inverse_h, 0.5);
-          overlap(x, l, cell, lower);
-          lower = select(cell < 0, Pack{}, select(cell > frame.last_node[d] - 2, broadcast(1.0), lower));
-          store(share[d][0], lower);
-          store(share[d][1], 1.0 - lower);
-          start = start * kTile + (cell - frame.first_node[d]);
-        }
-        for (int l = 0; l < kLanes; ++l) {
-          double* first = tile + start[l] * 4;
-          for (int k = 0; k < (D == 3 ? 2 : 1); ++k)
-            for (int j = 0; j < 2; ++j)
-              for (int i = 0; i < 2; ++i) {
-                double f = share[0][i][l] * share[1][j][l];
-                if constexpr (D == 3) f *= share[2][k][l];
-                double* to = first + (((D == 3 ? k * kTile : 0) + j) * kTile + i) * 4;
-                (Reg<4>::load(to) + node[l] * f).store(to);
-              }
-        }
-      }
-    }
-  });
-}
-
 }  // namespace
 
 void scatter_state(mpm::Transfer<2>& t, AffineKind a) {
@@ -433,12 +373,6 @@ void scatter_pore_water(mpm::Transfer<2>& t, double density, bool kozeny_carman)
 }
 void scatter_pore_water(mpm::Transfer<3>& t, double density, bool kozeny_carman) {
   scatter_water<3>(t, density, kozeny_carman);
-}
-void scatter_cells(mpm::Transfer<2>& t) {
-  scatter_cells_of(t);
-}
-void scatter_cells(mpm::Transfer<3>& t) {
-  scatter_cells_of(t);
 }
 
 }  // namespace polder::POLDER_SIMD_NAMESPACE

@@ -10,7 +10,7 @@ namespace {
 // nodes, from the tile's first) lies there; -1 or a block of the halo has no tile.
 template <int D, int kWidth>
 POLDER_INLINE void add_row(const mpm::Transfer<D>& transfer, const int* blocks, int of_row,
-                           Reg<kWidth> (&row)[Grid<D>::kSide]) {
+                           TileValue<kWidth> (&row)[Grid<D>::kSide]) {
   constexpr int kSide = Grid<D>::kSide, kTile = mpm::Transfer<D>::kTileSide;
   const auto tile_row = [&](int block) -> const double* {
     if (block < 0 || block >= transfer.grid->occupied_blocks()) return nullptr;
@@ -19,10 +19,10 @@ POLDER_INLINE void add_row(const mpm::Transfer<D>& transfer, const int* blocks, 
   };
   // A tile covers nodes [-1, kSide + 3) of its block.
   if (const double* before = tile_row(blocks[0]))
-    for (int x = 0; x < 3; ++x) row[x] += Reg<kWidth>::load(before + (x + 1 + kSide) * kWidth);
+    for (int x = 0; x < 3; ++x) row[x] += load_value<kWidth>(before + (x + 1 + kSide) * kWidth);
   if (const double* own = tile_row(blocks[1]))
-    for (int x = 0; x < kSide; ++x) row[x] += Reg<kWidth>::load(own + (x + 1) * kWidth);
-  if (const double* behind = tile_row(blocks[2])) row[kSide - 1] += Reg<kWidth>::load(behind);
+    for (int x = 0; x < kSide; ++x) row[x] += load_value<kWidth>(own + (x + 1) * kWidth);
+  if (const double* behind = tile_row(blocks[2])) row[kSide - 1] += load_value<kWidth>(behind);
 }
 
 // put(slot, row): what becomes of the sums of a row of nodes, the first of them `slot`.
@@ -39,7 +39,7 @@ void sum_width(const mpm::Transfer<D>& transfer, const Put& put) {
     const int* neighbours = grid.neighbours(block).data();
     for (int z = 0; z < (D == 3 ? kSide : 1); ++z)
       for (int y = 0; y < kSide; ++y) {
-        Reg<kWidth> row[kSide] = {};
+        TileValue<kWidth> row[kSide] = {};
         for (int bz = D == 3 ? 0 : 1; bz < (D == 3 ? 3 : 2); ++bz) {
           if (!covers(bz, z)) continue;
           for (int by = 0; by < 3; ++by) {
@@ -103,6 +103,13 @@ void sum_cells_of(mpm::Transfer<D>& transfer, Reals& cells) {
   });
 }
 
+template <int D>
+void sum_volume_of(mpm::Transfer<D>& transfer, Reals& cells) {
+  sum_width<D, 1>(transfer, [&](std::size_t slot, const auto& row) {
+    for (int x = 0; x < Grid<D>::kSide; ++x) cells[slot + x] = row[x];
+  });
+}
+
 }  // namespace
 
 void sum_state(mpm::Transfer<2>& transfer, Reals& sums, Reals& velocity) {
@@ -131,6 +138,12 @@ void sum_cells(mpm::Transfer<2>& transfer, Reals& cells) {
 }
 void sum_cells(mpm::Transfer<3>& transfer, Reals& cells) {
   sum_cells_of(transfer, cells);
+}
+void sum_volume(mpm::Transfer<2>& transfer, Reals& cells) {
+  sum_volume_of(transfer, cells);
+}
+void sum_volume(mpm::Transfer<3>& transfer, Reals& cells) {
+  sum_volume_of(transfer, cells);
 }
 
 }  // namespace polder::POLDER_SIMD_NAMESPACE

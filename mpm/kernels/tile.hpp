@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstring>
+#include <type_traits>
 
 #include "core/simd.hpp"
 #include "mpm/stencil.hpp"
@@ -46,6 +47,25 @@ struct TileStencil {
     return (to_real(axis[d].base) + double(a)) * h + frame.origin[d] - position;
   }
 };
+
+// What a tile holds of a node or cell: kWidth numbers, or a single one.
+template <int kWidth>
+using TileValue = std::conditional_t<kWidth == 1, double, Reg<kWidth == 1 ? 2 : kWidth>>;
+
+template <int kWidth>
+POLDER_INLINE TileValue<kWidth> load_value(const double* p) {
+  if constexpr (kWidth == 1)
+    return *p;
+  else
+    return Reg<kWidth>::load(p);
+}
+template <int kWidth>
+POLDER_INLINE void store_value(double* p, const TileValue<kWidth>& value) {
+  if constexpr (kWidth == 1)
+    *p = value;
+  else
+    value.store(p);
+}
 
 // Fields of particles are many streams, more than processors foresee: what comes kAhead packs later is asked
 // for by hand, a cache line a field.
