@@ -256,6 +256,43 @@ TEST_CASE("points that join later get the next ids and every array grows with th
   CHECK(after == values);
 }
 
+TEST_CASE_TEMPLATE("a new point takes an entry of padding in its block while there is one", T, Two, Three) {
+  constexpr int D = T::value;
+  Grid<D> grid = make_grid<D>();
+  ParticleSet<D> set = make_points<D>(grid, 61);
+  activate_and_sort(grid, set);
+  const auto values = values_of(set);
+  const int slots = set.slots();
+  int block = 0, spare = 0;
+  for (int b = 0; b < grid.occupied_blocks() && spare < 2; ++b) {
+    block = b, spare = 0;
+    for (int p = set.ranges[b].first; p < set.ranges[b].first + set.ranges[b].count; ++p)
+      spare += set.id[p] < 0;
+  }
+  REQUIRE(spare >= 2);
+  for (int i = 0; i < spare; ++i) {
+    const int p = set.insert(block);
+    REQUIRE(p >= set.ranges[block].first);
+    REQUIRE(p < set.ranges[block].first + set.ranges[block].count);
+    CHECK(set.id[p] == 61 + i);
+    CHECK(set.find(61 + i) == p);
+    for (const ParticleField& f : set.fields()) CHECK((*f.values)[p] == 0);
+    for (int d = 0; d < D; ++d)
+      set.position[d][p] = grid.origin()[d] + (grid.block_origin(block)[d] + 0.5) * kSpacing;
+    set.mass[p] = 1;
+  }
+  CHECK(set.insert(block) == -1);
+  CHECK(set.insert(grid.occupied_blocks()) == -1);
+  CHECK(set.count() == 61 + spare);
+  CHECK(set.slots() == slots);
+  const auto before = places(set);
+  activate_and_sort(grid, set);
+  check_order(grid, set, before);
+  auto after = values_of(set);
+  for (int i = 0; i < spare; ++i) after.erase(61 + i);
+  CHECK(after == values);
+}
+
 TEST_CASE_TEMPLATE("a point outside the grid is named with its body", T, Two, Three) {
   constexpr int D = T::value;
   Grid<D> grid = make_grid<D>();
