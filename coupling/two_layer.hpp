@@ -7,7 +7,8 @@
 //   (n / Kw) dp/dt + div [ (1 - n) v + n w ] = 0
 // Drag is exchanged implicitly at each node, so it limits no step and conserves momentum exactly; pressure is
 // projected out of the mixture's flow. Order of a step:
-//   sort, cells (fill of water, porosity, drag), scatter both layers,
+//   sort, cells (fill of water, porosity, drag: coupling/layer_cells.hpp), scatter both layers, find the
+//   nodes that hold something, the only ones looked at from here on,
 //   predict with grad p^n, constrain, let viscosity act, exchange drag, solve for dp, correct both with grad
 //   dp, gather both, take the drift out of the water's volume, let points in and out at open sides.
 #pragma once
