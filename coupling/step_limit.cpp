@@ -144,8 +144,10 @@ class Patch {
       }
       for (Reals& c : set.affine) std::fill(c.begin(), c.end(), 0.0);
       std::fill(set.pore_pressure.begin(), set.pore_pressure.end(), 0.0);
+      // Against the grains: what drag does to the difference shows from the first step on.
       for (int d = 0; d < D; ++d)
-        if (!set.water_velocity[d].empty()) set.water_velocity[d] = set.velocity[d];
+        if (!set.water_velocity[d].empty())
+          for (int p = 0; p < set.slots(); ++p) set.water_velocity[d][p] = -set.velocity[d][p];
     }
     if (world_->pore_water) {
       Reals& p = world_->pore_water->pressure.pressure();

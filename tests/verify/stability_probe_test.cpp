@@ -47,6 +47,19 @@ TEST_CASE("theory and the limit found by experiment agree where the theory has p
     }
 }
 
+TEST_CASE("the printed limit of explicit drag is none that a block breaks down below") {
+  polder::set_threads(1);
+  for (const double k : {1e-5, 1e-4}) {
+    CAPTURE(k);
+    Specimen s;
+    s.formulation = "v-w", s.conductivity = k;
+    s.drag = polder::coupling::DragStep::by_last_velocities;
+    const double limit = printed_limit(s);
+    CHECK(probe(s, 0.98 * limit).mark() == Mark::stable);
+    CHECK(probe(s, 1.05 * limit).mark() >= Mark::grows);
+  }
+}
+
 TEST_CASE("layers far beyond their cap break down too") {
   polder::set_threads(1);
   Specimen s;
