@@ -26,7 +26,7 @@ RANGES = {
     "flip-3d": (3000, 3750),
     "tpic-3d": (3000, 3750),
     "one-layer-2d": (3120, 3890),
-    "two-layer-2d": (2400, 3000),
+    "two-layer-2d": (2020, 2520),
 }
 # A dry step of the full program, balances and choice of the step included, over the loop of the skeleton alone.
 PAIRS = {"dry-2d": "bare-2d", "dry-3d": "bare-3d"}
