@@ -9,6 +9,7 @@
 #include "app/digits.hpp"
 #include "app/geometry.hpp"
 #include "coupling/quantities.hpp"
+#include "coupling/sleep.hpp"
 #include "mpm/plane_patch.hpp"
 
 namespace polder::app {
@@ -280,6 +281,14 @@ void check_measures(Reader& reader) {
   }
 }
 
+void check_sleep(Reader& reader) {
+  if (!reader.scene.numerics.sleep || reader.failed("numerics") || reader.failed("formulation") ||
+      reader.failed("stage") || reader.failed("material") || reader.failed("gravity"))
+    return;
+  if (const char* why = coupling::keeps_awake(reader.scene))
+    reader.error("numerics.sleep", std::string("soil cannot sleep here: ") + why, "false");
+}
+
 void check_scene(Reader& reader) {
   check_names(reader);
   check_bodies(reader);
@@ -288,6 +297,7 @@ void check_scene(Reader& reader) {
   check_water_on_points(reader);
   check_boundaries(reader);
   check_measures(reader);
+  check_sleep(reader);
   const Vector3& g = reader.scene.gravity;
   if (reader.scene.grid.space == Space::axisymmetric && g[0] != 0 && !reader.failed("gravity"))
     reader.error("gravity", "gravity across the axis of an axisymmetric grid", "[0, gy]");

@@ -165,6 +165,23 @@ const Table<NumericsSpec>& numerics_keys() {
         "Retention curves and flows through upright faces as means over the height of a cell in which water "
         "hangs at rest: a free surface then passes evenly through cells that are larger than the capillary "
         "fringe. Only where all stages are of mode \"seepage\".");
+    const auto sleeps = [](const NumericsSpec& n) { return n.sleep; };
+    t.add("sleep", boolean(), &NumericsSpec::sleep,
+          "In dynamic stages soil that has come to rest is put to sleep, block by block of the grid, until "
+          "forces, motion or pore pressure wake it: faster, with a small error. Formulations dry and "
+          "one-layer.");
+    t.add("sleep_velocity", number(dimension::kVelocity, kNotNegative), &NumericsSpec::sleep_velocity,
+          "Nodes slower than this rest: soil that creeps so slowly stands still instead. 0: 0.003 of "
+          "sqrt(g cell).")
+        .only_with("sleep", "sleep = true", sleeps);
+    t.add("sleep_delay", number(dimension::kTime, kNotNegative), &NumericsSpec::sleep_delay,
+          "How long they must rest before they sleep. 0: 15 sqrt(cell / g).")
+        .only_with("sleep", "sleep = true", sleeps);
+    t.add("sleep_force", number(dimension::kNone, {.min = 0, .max = 1, .min_open = true}),
+          &NumericsSpec::sleep_force,
+          "Out-of-balance force over weight, of a block, that wakes it; half of it must not be passed to "
+          "fall asleep.")
+        .only_with("sleep", "sleep = true", sleeps);
     return t;
   }();
   return table;

@@ -281,6 +281,13 @@ void Run::finish(RunOutcome& outcome) {
   const double speed = t.total > 0 ? static_cast<double>(simulation_.steps() - summary_.first_step) *
                                          static_cast<double>(simulation_.particles()) / t.total
                                    : 0;
+  const coupling::Savings saved = simulation_.savings();
+  if (simulation_.scene().numerics.sleep)
+    log_.line(
+        "asleep       " + count_text(static_cast<double>(saved.skipped_particle_steps)) + " of " +
+        count_text(static_cast<double>(simulation_.steps()) * static_cast<double>(simulation_.particles())) +
+        " particle-steps were skipped, blocks put to sleep " + std::to_string(saved.blocks_asleep) +
+        " times");
   log_.line("done in " + duration_text(summary_.wall_seconds) + ": mechanics " + duration_text(t.mechanics) +
             ", water " + duration_text(t.water) + ", balances " + duration_text(t.audit) + ", output " +
             duration_text(summary_.output_seconds) + " (waiting for the writer " +

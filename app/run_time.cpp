@@ -30,6 +30,7 @@ double trial(const Scene& scene, const Stage& stage) {
   const auto seconds = [](auto duration) { return std::chrono::duration<double>(duration).count(); };
   Scene alone = scene;
   alone.stages = {stage};
+  alone.numerics.sleep = false;  // nothing has come to rest yet
   alone.measures.clear();
   alone.expectations.clear();
   try {

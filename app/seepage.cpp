@@ -280,6 +280,7 @@ Scene seepage_scene(const Scene& given, std::vector<std::string>& remarks) {
                      "\"one-layer\"");
   Scene scene = given;
   scene.stages.clear();
+  scene.numerics.sleep = false;  // nothing moves
   std::vector<std::string> gone;
   bool changed = false;
   for (const Stage& s : given.stages) {

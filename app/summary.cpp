@@ -57,6 +57,29 @@ Json stages(const Simulation& s, const RunSummary& summary) {
   return list;
 }
 
+// What was not computed, beside what would have been. Systems are those of this call.
+Json saved(const Simulation& s) {
+  const coupling::Savings saved = s.savings();
+  Json all = Json::object();
+  Json cells = Json::object();
+  cells["grid"] = saved.all_cells;
+  cells["stored"] = saved.stored_cells;
+  cells["in_pressure_system"] = saved.pressure_cells;
+  all["cells"] = std::move(cells);
+  Json systems = Json::object();
+  systems["solved"] = saved.systems;
+  systems["structures_analysed"] = saved.structures;
+  systems["factorisations"] = saved.factors;
+  all["pressure_systems"] = std::move(systems);
+  Json sleep = Json::object();
+  sleep["particle_steps"] = s.steps() * s.particles();
+  sleep["particle_steps_skipped"] = saved.skipped_particle_steps;
+  sleep["blocks_put_to_sleep"] = saved.blocks_asleep;
+  sleep["blocks_woken"] = saved.blocks_woken;
+  all["sleep"] = std::move(sleep);
+  return all;
+}
+
 // The last recorded value of every measure.
 Json measures(const Simulation& s, const RunFolder& folder, const std::vector<coupling::Column>& history) {
   Json all = Json::object();
@@ -183,6 +206,7 @@ void write_summary(const Simulation& s, const RunFolder& folder, const RunSummar
   root["expectations"] = std::move(expectations);
   root["peak_memory_bytes"] = peak_memory_bytes();
   root["skipped"] = Json::array_of(s.skipped());
+  root["saved"] = saved(s);
   write_file_atomically(folder.summary(), root.text());
 }
 

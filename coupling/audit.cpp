@@ -113,6 +113,13 @@ void Audit<D>::add_step(const World<D>& world, double dt, double damping, double
 }
 
 template <int D>
+void Audit<D>::add_impulse(const Point<D>& impulse) {
+  double square = 0;
+  for (int d = 0; d < D; ++d) impulse_[d] += impulse[d], square += impulse[d] * impulse[d];
+  impulse_magnitude_ += std::sqrt(square);
+}
+
+template <int D>
 void Audit<D>::rebase(const World<D>& world) {
   const Totals t = totals(world);
   initial_kinetic_ =

@@ -37,6 +37,7 @@ class Audit {
   // After the step's last constrain and before gather would be too early for particles, so call it after the
   // step: uses the nodal velocities of the step just made.
   void add_step(const World<D>& world, double dt, double damping, double gravity);
+  void add_impulse(const Point<D>& impulse);  // that points have received elsewhere than at the nodes
   Totals totals(const World<D>& world) const;
 
   const Work& work() const { return work_; }

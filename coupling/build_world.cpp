@@ -10,6 +10,7 @@
 #include "coupling/point_water.hpp"
 #include "coupling/points.hpp"
 #include "coupling/random_field.hpp"
+#include "coupling/sleep.hpp"
 #include "coupling/two_layer.hpp"
 #include "coupling/world.hpp"
 #include "mpm/seed_particles.hpp"
@@ -284,6 +285,10 @@ std::unique_ptr<World<D>> build_world(const Scene& scene) {
   if (!scene.unsaturated()) set_initial_stress(*world);  // else when the suction is known
   if (scene.layered()) fluidise(*world);
   world->skeleton.set_laws(world->materials, true);
+  if (scene.numerics.sleep) {
+    if (const char* why = keeps_awake(scene)) throw InputError(std::string("numerics.sleep: ") + why);
+    world->skeleton.allow_sleep(sleep_options(scene));
+  }
   world->skeleton.sort(true);
   if (world->pore_water && world->pore_water->layer) world->pore_water->layer->fluid.follow_grid();
   return world;

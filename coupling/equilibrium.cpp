@@ -79,6 +79,7 @@ template <int D>
 StabilityTrial Simulation::Run<D>::try_reduced_strength(double factor, const StabilityOptions& options) {
   relaxation.reset();
   laws_set = false;
+  if (mpm::Sleep<D>* sleep = world->skeleton.sleep()) sleep->wake_all();
   for (auto& body : world->skeleton.bodies())
     for (int d = 0; d < D; ++d) body->initial_position[d] = body->position[d];  // displacements of the trial
   return coupling::try_reduced_strength(*world, factor, options, time);

@@ -297,20 +297,30 @@ void set_initial_pressure(World<D>& world) {
 template <int D>
 void wet_points(World<D>& world) {
   const Grid<D>& grid = world.skeleton.grid();
+  mpm::Sleep<D>* sleep = world.skeleton.sleep();
+  std::vector<std::uint8_t> changed;  // blocks; where soil sleeps
+  if (sleep != nullptr) changed.assign(grid.occupied_blocks(), 0);
   for (auto& body : world.skeleton.bodies()) {
     ParticleSet<D>& set = *body;
     if (set.suction_stress.empty()) continue;
     const int capillary = world.layouts[set.material].capillary_factor;
-    parallel_for(set.slots(), [&](int p) {
+    const auto wet = [&](int p) {
       if (set.id[p] < 0 || (set.wet[p] > 0 && !world.pore_water->layer) ||
           (set.suction_stress[p] == 0 && (capillary < 0 || set.state[capillary][p] == 0)))
-        return;
+        return false;
       const int slot = grid.slot(set.cell_of(grid, p));
-      if (slot < 0 || !world.pore_water->cells.active(slot)) return;
+      if (slot < 0 || !world.pore_water->cells.active(slot)) return false;
       set.suction_stress[p] = 0;
       if (capillary >= 0) set.state[capillary][p] = 0;
+      return true;
+    };
+    parallel_for(static_cast<int>(set.ranges.size()), [&](int block) {
+      const auto range = set.ranges[block];
+      for (int p = range.first; p < range.first + range.count; ++p)
+        if (wet(p) && !changed.empty()) changed[block] = 1;
     });
   }
+  if (sleep != nullptr) sleep->wake(changed);
 }
 
 #define POLDER_INSTANTIATE(D)                                  \

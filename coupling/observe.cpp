@@ -74,6 +74,7 @@ std::vector<Column> Simulation::Run<D>::history() const {
       add("reaction:" + spec.name + "_" + kAxis[d] + "[N]",
           skeleton.boundaries().reaction(static_cast<int>(b))[d]);
   }
+  if (skeleton.sleep() != nullptr) add("sleeping_points", static_cast<double>(skeleton.sleep()->points()));
   if (world->pore_water) {
     look_at_cells();
     PoreWater<D>& water = *world->pore_water;

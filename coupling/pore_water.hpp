@@ -166,6 +166,9 @@ struct PoreWater {
     if (points) return points->discharge;
     return unsaturated ? unsaturated->field.discharge() : pressure.discharge();
   }
+  fdm::SolverCounts solver_counts() const {
+    return unsaturated ? unsaturated->field.solver_counts() : pressure.solver_counts();
+  }
   const char* solver_name() const {
     if (compressible) return "explicit";
     return unsaturated ? unsaturated->field.solver_name() : pressure.solver_name();

@@ -104,6 +104,12 @@ struct NumericsSpec {
   // Retention curves and flows through upright faces as means over the height of a cell: free surfaces within
   // cells. Rigid skeleton only.
   bool cell_means = false;
+  // Soil at rest sleeps in dynamic stages (mpm/sleep.hpp). 0: after the size of a cell, see
+  // coupling/sleep.hpp.
+  bool sleep = false;
+  double sleep_velocity = 0;  // [m/s]
+  double sleep_delay = 0;     // [s]
+  double sleep_force = 0.1;   // out of balance over weight [-]
   bool operator==(const NumericsSpec&) const = default;
 };
 

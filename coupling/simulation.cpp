@@ -42,12 +42,6 @@ const char* mode_name(Stage::Mode mode) {
   return "dynamic";
 }
 
-// How a stage ended, as a checkpoint keeps it.
-const std::vector<std::string>& endings() {
-  static const std::vector<std::string> list{"", "duration", "equilibrium", "failure", "steady"};
-  return list;
-}
-
 }  // namespace
 
 // ---- one dimension
@@ -110,6 +104,8 @@ template <int D>
 void Simulation::Run<D>::begin_stage() {
   world->skeleton.set_laws(world->materials, present().plastic);
   world->skeleton.boundaries().set_sticking(present().sticking);
+  if (mpm::Sleep<D>* sleep = world->skeleton.sleep())
+    sleep->set_active(present().mode == Stage::Mode::dynamic);
   laws_set = true;
 }
 
@@ -183,6 +179,11 @@ void Simulation::Run<D>::step_motion() {
     }
     Stopwatch watch_audit(timing.audit);
     audit->add_step(*world, dt, in.damping, in.gravity);
+    if (mpm::Sleep<D>* sleep = world->skeleton.sleep()) {
+      Point<D> impulse = sleep->take_stopped();
+      for (double& x : impulse) x = -x;
+      audit->add_impulse(impulse);
+    }
   }
   if (!lands) {
     smallest = smallest == 0 ? dt : std::min(smallest, dt);
@@ -217,6 +218,7 @@ template <int D>
 void Simulation::Run<D>::end_stage(const std::string& by) {
   reports[stage].ended_by = by;
   marked = true;
+  if (mpm::Sleep<D>* sleep = world->skeleton.sleep()) sleep->wake_all();
   const Stage& ended = present();
   for (auto& body : world->skeleton.bodies()) {
     ParticleSet<D>& set = *body;
@@ -253,133 +255,6 @@ void Simulation::Run<D>::end_stage(const std::string& by) {
   water_step = relax_change = 0;
   locally_failed = false;
   laws_set = false;
-}
-
-template <int D>
-void Simulation::Run<D>::visit_points(StateVisitor& v, const std::string& prefix, ParticleSet<D>& set) {
-  std::int64_t points = set.next_id();
-  v.count(prefix + "points", points);
-  v.integers(prefix + "id", set.id);
-  std::vector<int> ranges;
-  for (const auto& r : set.ranges) ranges.push_back(r.first), ranges.push_back(r.count);
-  v.integers(prefix + "ranges", ranges);
-  for (ParticleField& f : set.fields()) v.reals(prefix + f.name, *f.values);
-  if (!v.reading()) return;
-  set.ranges.assign(ranges.size() / 2, {});
-  for (std::size_t r = 0; r < set.ranges.size(); ++r) set.ranges[r] = {ranges[2 * r], ranges[2 * r + 1]};
-  set.restore(static_cast<int>(points));
-}
-
-template <int D>
-void Simulation::Run<D>::visit(StateVisitor& v) {
-  const auto integer = [&](const char* name, auto& value) {
-    std::int64_t n = value;
-    v.count(name, n);
-    value = static_cast<std::remove_reference_t<decltype(value)>>(n);
-  };
-  v.number("time", time), v.number("stage_start", stage_start), v.number("dt", dt);
-  v.number("smallest_step", smallest), v.number("largest_step", largest);
-  v.number("wave_speed", wave_speed), v.number("speed", speed);
-  v.number("force_ratio", force_ratio), v.number("energy_ratio", energy_ratio);
-  v.number("initial_solid_mass", initial_solid_mass), v.number("initial_water_volume", initial_water_volume);
-  integer("steps", steps), integer("stage_steps", stage_steps), integer("stage", stage);
-  for (std::size_t s = 0; s < reports.size(); ++s) {
-    const std::string n = "stage_" + std::to_string(s);
-    std::int64_t count = reports[s].steps;
-    std::int64_t ended =
-        std::find(endings().begin(), endings().end(), reports[s].ended_by) - endings().begin();
-    v.count(n + "_steps", count), v.number(n + "_time", reports[s].time), v.count(n + "_ended", ended);
-    reports[s].steps = count, reports[s].ended_by = endings().at(ended);
-  }
-  visit_water_stage(v);
-  int i = 0;
-  for (double* x : audit->state()) v.number("audit_" + std::to_string(i++), *x);
-
-  mpm::Skeleton<D>& skeleton = world->skeleton;
-  double travelled = skeleton.travelled(), floor = skeleton.mass_floor();
-  std::vector<int> blocks;
-  for (int b = 0; b < skeleton.grid().occupied_blocks(); ++b)
-    blocks.push_back(skeleton.grid().block_number(skeleton.grid().block_origin(b)));
-  v.number("travelled", travelled), v.number("mass_floor", floor), v.integers("blocks", blocks);
-  if (v.reading()) skeleton.restore(travelled, floor, blocks);
-  for (std::size_t b = 0; b < skeleton.bodies().size(); ++b)
-    visit_points(v, "body_" + std::to_string(b) + "/", *skeleton.bodies()[b]);
-  for (std::size_t l = 0; l < skeleton.loads().size(); ++l) {
-    std::vector<Point<D>>& vertices = skeleton.loads()[l].vertices();
-    Reals coordinates;
-    for (const Point<D>& x : vertices) coordinates.insert(coordinates.end(), x.begin(), x.end());
-    v.reals("load_" + std::to_string(l), coordinates);
-    if (v.reading())
-      for (std::size_t k = 0; k < vertices.size(); ++k)
-        std::copy_n(coordinates.begin() + static_cast<std::ptrdiff_t>(k * D), D, vertices[k].begin());
-  }
-  if (world->pore_water) {
-    visit_water(v);
-  }
-  visit_relaxation(v);
-  if (v.reading()) laws_set = false;
-}
-
-template <int D>
-void Simulation::Run<D>::visit_water(StateVisitor& v) {
-  PoreWater<D>& water = *world->pore_water;
-  Reals owed;
-  if (water.layer) {
-    WaterLayer<D>& layer = *water.layer;
-    visit_points(v, "water/", layer.fluid.points());
-    owed = layer.owed;
-    v.reals("water_owed", owed);
-    for (std::size_t b = 0; b < layer.fluidised.size(); ++b)
-      v.reals("fluidised_" + std::to_string(b), layer.fluidised[b]);
-    v.number("water_added", layer.added), v.number("water_removed", layer.removed);
-    if (v.reading()) layer.fluid.follow_grid();
-  }
-  if (water.points) {  // the points' own fields say all; cells follow from them
-    v.number("outflow", water.outflow), v.number("storage", water.storage);
-    v.number("explicit_limit", water.explicit_limit.dt);
-    if (!v.reading()) return;
-    water.pressure.carry();
-    water.points->cells_found = false;
-    find_cells_of_points(*world, time);
-    return;
-  }
-  UnsaturatedWater<D>* unsaturated = water.unsaturated.get();
-  Reals pressure = water.pore_pressure(), saturation, points, active, travel;
-  std::vector<int> cells =
-      unsaturated ? unsaturated->field.pressure_cells() : water.pressure.pressure_cells();
-  v.reals("pore_pressure", pressure), v.integers("pressure_cells", cells);
-  v.number("outflow", water.outflow), v.number("storage", water.storage);
-  VolumeFeedback feedback = water.feedback;
-  v.reals("feedback_compressibility", feedback.compressibility);
-  v.reals("feedback_foreseen", feedback.foreseen), v.reals("feedback_owed", feedback.owed);
-  if (water.compressible) {
-    std::int64_t darcy = water.explicit_limit.darcy;
-    v.number("explicit_limit", water.explicit_limit.dt), v.count("explicit_limit_darcy", darcy);
-    water.explicit_limit.darcy = darcy != 0;
-  }
-  if (unsaturated) {
-    saturation = unsaturated->field.saturation();
-    points = unsaturated->point_saturation, active = unsaturated->was_active, travel = unsaturated->travel;
-    v.reals("saturation", saturation), v.reals("point_saturation", points), v.reals("was_active", active);
-    v.reals("travel", travel);
-  }
-  if (!v.reading()) return;
-  carry_water(*world);
-  if (water.layer) water.layer->owed = owed;  // in the order of the slots already
-  water.feedback = feedback;                  // likewise
-  if (unsaturated) {
-    // The cells follow the points when the next step begins, as they would have.
-    unsaturated->field.restore(pressure, saturation, cells);
-    unsaturated->point_saturation = points, unsaturated->was_active = active, unsaturated->travel = travel;
-    unsaturated->mapped = true;
-    unsaturated->soil_revision = 0;
-    update_water_cells(*world, time);
-    unsaturated->field.restore(pressure, saturation, cells);
-    unsaturated->point_saturation = points, unsaturated->was_active = active, unsaturated->travel = travel;
-  } else {
-    update_water_cells(*world, time);
-    water.pressure.restore(pressure, cells);
-  }
 }
 
 // ---- the interface
@@ -536,38 +411,6 @@ void Simulation::visit(StateVisitor& v) {
 }
 StabilityTrial Simulation::try_reduced_strength(double factor, const StabilityOptions& options) {
   return run_->try_reduced_strength(factor, options);
-}
-
-std::vector<std::string> Simulation::skipped() const {
-  std::vector<std::string> s;
-  const Scene& scene = run_->scene;
-  if (find_formulation(scene.formulation)->carrier == WaterCarrier::none)
-    s.push_back("pore water: the formulation has none, so no pressure cells, no solver, no porosity fields");
-  else {
-    if (!scene.unsaturated()) {
-      s.push_back(
-          "retention curves: no material has one, so no curve is evaluated and suction does not change");
-      if (scene.water.phreatic.empty() || scene.water.suction_above == 0)
-        s.push_back("suction: the scene has none");
-    }
-    if (const long empty = run_->cells() - run_->pressure_cells(); empty > 0)
-      s.push_back("pressure in " + std::to_string(empty) + " stored cells without " +
-                  (scene.unsaturated() ? "porous" : "saturated") + " soil: not in the system");
-    if (std::none_of(scene.stages.begin(), scene.stages.end(), [](const Stage& t) { return t.moves(); }))
-      s.push_back("motion: no stage has any, so nothing is transferred between points and nodes");
-    if (scene.compressible())
-      s.push_back(
-          "linear systems: pressure is explicit where soil moves; solver_tolerance counts in stages of "
-          "seepage "
-          "and quasi-static ones only");
-    if (!scene.water.outside_level && !scene.layered())
-      s.push_back("open water on the surface: the scene has none");
-  }
-  s.push_back("discrete elements: the scene has none, so LIGGGHTS and MPI are not loaded");
-  s.push_back("blocks without particles: neither stored nor visited");
-  if (scene.numerics.transfer == Transfer::flip)
-    s.push_back("affine particle velocities: the transfer is FLIP");
-  return s;
 }
 
 template struct Simulation::Run<2>;

@@ -124,6 +124,19 @@ struct Timing {
   double mechanics = 0, water = 0, audit = 0, total = 0;
 };
 
+// What a run has not had to do; Simulation::skipped() tells why.
+struct Savings {
+  long stored_cells = 0, all_cells = 0;  // of the grid
+  long pressure_cells = 0;               // in the pressure system
+  // Of this program's run, restarts apart: pressure systems solved, structures of their matrix analysed,
+  // Cholesky factors computed.
+  std::int64_t systems = 0, structures = 0, factors = 0;
+  // Sleeping soil (mpm/sleep.hpp): points asleep now; particle-steps not made; blocks put to sleep, and
+  // woken.
+  long sleeping_points = 0;
+  std::int64_t skipped_particle_steps = 0, blocks_asleep = 0, blocks_woken = 0;
+};
+
 class Simulation {
  public:
   // Builds the world. Throws InputError for a scene that cannot be built.
@@ -184,6 +197,7 @@ class Simulation {
   PointFrame water_points() const;
   CellFrame water_cells() const;
   Timing timing() const;
+  Savings savings() const;
 
   void visit(StateVisitor& visitor);
 

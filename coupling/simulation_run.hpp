@@ -29,6 +29,7 @@ struct Simulation::Base {
   virtual PointFrame points(const std::vector<std::string>& fields) const = 0;
   virtual PointFrame water_points() const = 0;
   virtual CellFrame water_cells() const = 0;
+  virtual Savings savings() const = 0;
   virtual void visit(StateVisitor& visitor) = 0;
   virtual StabilityTrial try_reduced_strength(double factor, const StabilityOptions& options) = 0;
 
@@ -94,6 +95,7 @@ struct Simulation::Run final : Simulation::Base {
   PointFrame points(const std::vector<std::string>& fields) const override;
   PointFrame water_points() const override;
   CellFrame water_cells() const override;
+  Savings savings() const override;
   void visit(StateVisitor& visitor) override;
   StabilityTrial try_reduced_strength(double factor, const StabilityOptions& options) override;
 
@@ -101,6 +103,7 @@ struct Simulation::Run final : Simulation::Base {
   void look_at_cells() const;  // before cells are read: those of points that carry the pressure are found
   void begin_stage();
   void step_motion();
+  void visit_sleep(StateVisitor& visitor);
   void visit_water(StateVisitor& visitor);
   void visit_points(StateVisitor& visitor, const std::string& prefix, ParticleSet<D>& set);
   void visit_water_stage(StateVisitor& visitor);

@@ -55,6 +55,7 @@ Scene patch_of(const Scene& scene, const Body& body, bool wet) {
   double gravity = 0;
   for (double g : scene.gravity) gravity += g * g;
   s.gravity = {};
+  s.numerics.sleep = false;  // it is about motion
   mpm::MaterialParameters& m = s.materials[body.material];
   if (gravity > 0) m.hydraulic_conductivity *= kStandardGravity / std::sqrt(gravity);
   for (Material& soil : s.materials) soil.retention = {};  // air in the pores only softens the water

@@ -128,7 +128,7 @@ void Cholesky::analyse(int n, std::span<const Pair> off_diagonal) {
   s.check("allocation");
 }
 
-void Cholesky::factorise(std::span<const double> diagonal, std::span<const double> off_diagonal) {
+bool Cholesky::factorise(std::span<const double> diagonal, std::span<const double> off_diagonal) {
   Impl& s = *impl_;
   double* const values = static_cast<double*>(s.matrix->x);
   bool same = s.factorised;
@@ -138,7 +138,7 @@ void Cholesky::factorise(std::span<const double> diagonal, std::span<const doubl
   };
   for (int i = 0; i < s.n; ++i) set(s.diagonal_at[i], diagonal[i]);
   for (std::size_t k = 0; k < off_diagonal.size(); ++k) set(s.pair_at[k], off_diagonal[k]);
-  if (same) return;
+  if (same) return false;
   s.factorised = false;
   cholmod_factorize(s.matrix, s.factor, &s.common);
   s.check("factorisation");
@@ -146,6 +146,7 @@ void Cholesky::factorise(std::span<const double> diagonal, std::span<const doubl
     throw NumericalError("sparse Cholesky: the matrix is not positive definite (pivot " +
                          std::to_string(s.factor->minor) + " of " + std::to_string(s.n) + ")");
   s.factorised = true;
+  return true;
 }
 
 void Cholesky::solve(std::span<const double> rhs, std::span<double> x) {

@@ -30,9 +30,9 @@ class Cholesky {
   };
   // Non-zero off-diagonal entries of an n x n matrix.
   void analyse(int n, std::span<const Pair> off_diagonal);
-  // Values in the order of the unknowns and of the pairs. Throws NumericalError if the matrix is not positive
-  // definite.
-  void factorise(std::span<const double> diagonal, std::span<const double> off_diagonal);
+  // Values in the order of the unknowns and of the pairs; false if they are those of the present factor,
+  // which stays. Throws NumericalError if the matrix is not positive definite.
+  bool factorise(std::span<const double> diagonal, std::span<const double> off_diagonal);
   void solve(std::span<const double> rhs, std::span<double> x);
   int size() const;
   double factor_entries() const;  // non-zeros of L

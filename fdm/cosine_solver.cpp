@@ -30,6 +30,7 @@ void for_chunks(int cells, int chunks, const F& f) {
 
 template <int D>
 void CosineSolver<D>::analyse(const Connectivity<D>& connectivity) {
+  ++this->counts_.structures;
   connectivity_ = connectivity;
   full_box_ = false;
   arranged_axis_ = -1;
@@ -247,6 +248,7 @@ void CosineSolver<D>::solve_layers(std::span<const double> rhs, std::span<double
 template <int D>
 SolveReport CosineSolver<D>::solve(const SystemValues& system, const Accuracy& accuracy,
                                    std::span<double> x) {
+  ++this->counts_.systems;
   std::fill(x.begin(), x.end(), 0.0);
   if (x.empty()) return {};
   if (!applies(system))

@@ -21,16 +21,18 @@ void DirectSolver<D>::analyse(const Connectivity<D>& connectivity) {
   off_diagonal_.resize(pairs.size());
   cholesky_ = Cholesky(method_.value_or(CholeskyMethod{.supernodal = n > kSimplicialCells<D>}));
   if (n > 0) cholesky_.analyse(n, pairs);
+  ++this->counts_.structures;
 }
 
 template <int D>
 SolveReport DirectSolver<D>::solve(const SystemValues& system, const Accuracy& accuracy,
                                    std::span<double> x) {
+  ++this->counts_.systems;
   std::fill(x.begin(), x.end(), 0.0);
   const double b = defect_.start(system);
   if (x.empty() || b <= accuracy.floor) return {};
   for (std::size_t k = 0; k < off_diagonal_.size(); ++k) off_diagonal_[k] = -system.link[k];
-  cholesky_.factorise(defect_.diagonal(), off_diagonal_);
+  this->counts_.factors += cholesky_.factorise(defect_.diagonal(), off_diagonal_);
   return defect_.refine(
       system, accuracy, b, "sparse Cholesky", x,
       [&](std::span<const double> rhs, std::span<double> solution) { cholesky_.solve(rhs, solution); });

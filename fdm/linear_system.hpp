@@ -52,6 +52,12 @@ struct Accuracy {
   double floor = 0;
 };
 
+// What solving has taken so far: structures of the matrix that were analysed, and Cholesky factors of the
+// whole system; those that still fit were used again.
+struct SolverCounts {
+  std::int64_t systems = 0, structures = 0, factors = 0;
+};
+
 template <int D>
 class LinearSolver {
  public:
@@ -61,6 +67,10 @@ class LinearSolver {
   // The initial guess is always zero: nothing but the system decides the bits of the result. Throws
   // NumericalError if the accuracy is not reached.
   virtual SolveReport solve(const SystemValues& system, const Accuracy& accuracy, std::span<double> x) = 0;
+  virtual SolverCounts counts() const { return counts_; }
+
+ protected:
+  SolverCounts counts_;
 };
 
 enum class SolverKind {

@@ -17,6 +17,7 @@ constexpr int kCoarsestCells = 160;  // solved directly from here on
 
 template <int D>
 void Multigrid<D>::analyse(const Connectivity<D>& connectivity) {
+  ++this->counts_.structures;
   connectivity_ = connectivity;
   levels_.clear();
   coarsest_stale_ = true;
@@ -132,6 +133,7 @@ void Multigrid<D>::solve_coarsest(const Reals& b, Reals& x) {
 
 template <int D>
 SolveReport Multigrid<D>::solve(const SystemValues& system, const Accuracy& accuracy, std::span<double> x) {
+  ++this->counts_.systems;
   std::fill(x.begin(), x.end(), 0.0);
   if (levels_.empty()) return {};
   refresh(system);

@@ -153,6 +153,7 @@ class PressureField {
   LinearSolver<D>& solver() { return *solver_; }
 
   const char* solver_name() const;
+  SolverCounts solver_counts() const { return solver_->counts(); }
   int pinned_basins() const { return pinned_; }  // in the last solution
 
  private:

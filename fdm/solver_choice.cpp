@@ -29,6 +29,7 @@ class AutomaticSolver final : public LinearSolver<D> {
   const char* name() const override { return last_->name(); }
 
   void analyse(const Connectivity<D>& connectivity) override {
+    ++this->counts_.structures;
     connectivity_ = connectivity;
     direct_ready_ = multigrid_ready_ = false;
     cosine_.analyse(connectivity);
@@ -42,7 +43,13 @@ class AutomaticSolver final : public LinearSolver<D> {
     last_ = small() ? static_cast<LinearSolver<D>*>(&direct_) : &multigrid_;
   }
 
+  // Of the cells as a whole, whoever solved; factors of the direct solver.
+  SolverCounts counts() const override {
+    return {this->counts_.systems, this->counts_.structures, direct_.counts().factors};
+  }
+
   SolveReport solve(const SystemValues& system, const Accuracy& accuracy, std::span<double> x) override {
+    ++this->counts_.systems;
     if (cosine_.full_box() && cosine_.applies(system)) {
       try {
         last_ = &cosine_;

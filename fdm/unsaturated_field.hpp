@@ -163,6 +163,7 @@ class UnsaturatedField {
   const Discharge& discharge() const { return discharge_; }
   const WaterBalance& balance() const { return balance_; }  // of the last step
   const char* solver_name() const;
+  SolverCounts solver_counts() const { return solver_->counts(); }
 
  private:
   StepReport steady_steps(UnsaturatedStep step);

@@ -17,6 +17,8 @@ namespace {
 // earlier would lose momentum.
 constexpr double kMassFloor = 1e-26;
 
+constexpr double kFarTravelled = 1e9;  // cells: sort before the next step
+
 }  // namespace
 
 template <int D>
@@ -64,8 +66,10 @@ bool Skeleton<D>::sort(bool force) {
     const std::vector<int> numbers = set->occupied_block_numbers(grid_);
     occupied.insert(occupied.end(), numbers.begin(), numbers.end());
   }
+  if (sleep_) sleep_->before_sort();
   const bool changed = grid_.activate(std::move(occupied));
   for (ParticleSet<D>* set : sets) set->sort(grid_);
+  if (sleep_) sleep_->after_sort(changed);
   if (changed) allocate();
   travelled_ = 0;
   return changed;
@@ -82,6 +86,7 @@ void Skeleton<D>::restore(double travelled, double mass_floor, const std::vector
 template <int D>
 void Skeleton<D>::scatter(double time) {
   scatter_state(transfer_, options_.affine, sums_, v_old_);
+  if (sleep_) sleep_->find_held();
   applied_load_ = Point<D>{};
   for (const SurfaceLoad<D>& load : loads_) {
     const Point<D> f = load.apply(grid_, options_.shape, time, sums_);
@@ -100,7 +105,9 @@ template <int D>
 void Skeleton<D>::predict(double dt, const Point<D>& gravity, double damping, const Reals* acceleration) {
   const NodePrediction<D> p{dt, gravity, damping, mass_floor_, acceleration, &boundaries_.held_components()};
   const double squared_mass = predict_velocities(grid_, p, sums_, v_old_, v_trial_);
-  double load = 0;
+  double load = 0, square = 0;
+  for (double g : gravity) square += g * g;
+  gravity_ = std::sqrt(square);
   for (int d = 0; d < D; ++d)
     load += squared_mass * gravity[d] * gravity[d] + applied_load_[d] * applied_load_[d];
   load_norm_ = std::sqrt(load);
@@ -111,12 +118,17 @@ void Skeleton<D>::constrain(double time, double dt) {
   std::swap(v_new_, v_trial_);  // the next prediction writes every component anew
   boundaries_.apply(time, dt, sums_, v_new_, true, true);
   unbalanced_ = std::sqrt(squared_impulse(grid_, sums_, v_old_, v_new_)) / dt;
+  if (!sleep_) return;
+  sleep_->judge(dt, gravity_, sums_, v_old_, v_new_);
+  sleep_->hold(v_new_);
+  sleep_->count_held(v_old_, options_.affine == AffineKind::none ? options_.flip : 0);
 }
 
 template <int D>
 void Skeleton<D>::remap(double flip, const Reals& from, const Reals& to, double time, double dt) {
   update_velocities(transfer_, flip, from, to, sums_, v_map_);
   boundaries_.apply(time, dt, sums_, v_map_, false, false);
+  if (sleep_) sleep_->hold(v_map_);
   mapped_ = true;
 }
 
@@ -136,6 +148,7 @@ void Skeleton<D>::correct(double time, double dt, const Reals& correction) {
     for (std::size_t i = block * stride; i < (block + 1) * stride; ++i) v_new_[i] += correction[i];
   });
   boundaries_.apply(time, dt, sums_, v_new_, false, false);
+  if (sleep_) sleep_->hold(v_new_);
   if (options_.musl) remap(1.0, v_before_, v_new_, time, dt);
 }
 
@@ -169,6 +182,7 @@ MoveResult Skeleton<D>::move(double time, const MoveOptions& o, const Reals* bef
   for (SurfaceLoad<D>& load : loads_) load.move(grid_, options_.shape, dt, v, sums_);
   mapped_ = false;
   travelled_ += r.largest_displacement;
+  if (sleep_ && sleep_->end_step()) travelled_ = kFarTravelled;
   if (r.fastest_body >= 0) require_calm(r, *bodies_[r.fastest_body], time, dt);
   return r;
 }

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "mpm/boundary_set.hpp"
+#include "mpm/sleep.hpp"
 #include "mpm/surface_load.hpp"
 #include "mpm/transfer.hpp"
 
@@ -59,6 +60,11 @@ class Skeleton {
   const std::vector<std::unique_ptr<ParticleSet<D>>>& bodies() const { return bodies_; }
   // Laws of all bodies (by ParticleSet::material). plastic = false: elastic response.
   void set_laws(const std::vector<MaterialParameters>& materials, bool plastic);
+
+  // Blocks at rest may sleep from now on (mpm/sleep.hpp); before the first sort().
+  void allow_sleep(const SleepOptions& options) { sleep_ = std::make_unique<Sleep<D>>(options, transfer_); }
+  Sleep<D>* sleep() { return sleep_.get(); }  // null: nobody may
+  const Sleep<D>* sleep() const { return sleep_.get(); }
 
   // Re-sort if needed, or now if `force`. Returns true when slots were renumbered (Grid::carry moves other
   // fields).
@@ -141,11 +147,13 @@ class Skeleton {
   std::vector<ParticleSet<D>*> attached_;
   std::vector<std::shared_ptr<const void>> laws_;  // one for each body
   Transfer<D> transfer_;
+  std::unique_ptr<Sleep<D>> sleep_;
   Reals sums_, v_old_, v_trial_, v_new_, v_map_, v_before_;
   bool mapped_ = false;  // v_map_ and the particles' velocities belong to v_new_
   double travelled_ = 1e9;
   double mass_floor_ = 0;
   double unbalanced_ = 0, load_norm_ = 0;
+  double gravity_ = 0;  // of the last prediction [m/s2]
   Point<D> applied_load_{};
 };
 

@@ -24,11 +24,24 @@ void sum_momentum(Transfer<D>& transfer, const Reals& sums, Reals& velocity) {
   POLDER_SIMD_CALL(sum_momentum, transfer, sums, velocity);
 }
 
+// What blocks that have just fallen asleep give to their tiles.
+template <int D>
+void keep_tiles(Transfer<D>& transfer, int width, Reals Sleeper::*kept) {
+  const std::size_t size = static_cast<std::size_t>(Transfer<D>::kTileNodes) * width;
+  for (std::size_t b = 0; b < transfer.sleepers.size(); ++b) {
+    Sleeper& sleeper = transfer.sleepers[b];
+    if (!sleeper.asleep || !(sleeper.*kept).empty()) continue;
+    const auto tile = transfer.tiles.begin() + static_cast<std::ptrdiff_t>(b * size);
+    (sleeper.*kept).assign(tile, tile + static_cast<std::ptrdiff_t>(size));
+  }
+}
+
 }  // namespace
 
 template <int D>
 void scatter_state(Transfer<D>& transfer, AffineKind affine, Reals& sums, Reals& velocity) {
   POLDER_SIMD_CALL(scatter_state, transfer, affine);
+  keep_tiles(transfer, Transfer<D>::kSum, &Sleeper::state);
   sum_state(transfer, sums, velocity);
 }
 
@@ -43,6 +56,7 @@ void scatter_fluid(Transfer<D>& transfer, AffineKind affine, Reals& sums, Reals&
 template <int D>
 void scatter_cells(Transfer<D>& transfer, Reals& cells) {
   POLDER_SIMD_CALL(scatter_cells, transfer);
+  keep_tiles(transfer, Transfer<D>::kCellSum, &Sleeper::cells);
   fit(transfer, Transfer<D>::kCellSum, cells);
   POLDER_SIMD_CALL(sum_cells, transfer, cells);
 }

@@ -45,6 +45,13 @@ struct CellWeight {
   double retained_density = 0;  // of that water [kg/m3]
 };
 
+// A block whose points may sleep (mpm/sleep.hpp). Kernels leave the points of one that does alone, and take
+// from here what they give to its tile of nodes and cells; it is kept when it is first computed.
+struct Sleeper {
+  bool asleep = false;
+  Reals state, cells;
+};
+
 template <int D>
 struct Transfer {
   static constexpr int kTileSide = Grid<D>::kSide + 4;
@@ -59,8 +66,10 @@ struct Transfer {
   ShapeKind shape = ShapeKind::gimp;
   std::vector<Body<D>> bodies;
   CellWeight weight;
-  Reals tiles;  // work space, kSum numbers a tile node
+  Reals tiles;                    // work space, kSum numbers a tile node
+  std::vector<Sleeper> sleepers;  // occupied blocks; empty where none may sleep
 
+  bool asleep(int block) const { return !sleepers.empty() && sleepers[block].asleep; }
   // Room for all tiles after grid->activate().
   void resize() { tiles.resize(static_cast<std::size_t>(grid->occupied_blocks()) * kTileNodes * kSum); }
 };

@@ -43,6 +43,8 @@ void scatter_overlaps(mpm::Transfer<D>& transfer, const Fields& fields_of, const
   const Grid<D>& grid = *transfer.grid;
   parallel_for_work(work_of_blocks(transfer), [&](int block) {
     double* tile = transfer.tiles.data() + block * kTileSize;
+    if constexpr (kWidth == mpm::Transfer<D>::kCellSum)
+      if (transfer.asleep(block) && take_kept(transfer.sleepers[block].cells, tile)) return;
     std::memset(tile, 0, sizeof(double) * kTileSize);
     const BlockFrame<D> frame(grid, block);
     for (const mpm::Body<D>& body : transfer.bodies) {

@@ -290,6 +290,7 @@ MoveResult move_of(mpm::Transfer<D>& t, const MoveOptions& o,
   std::vector<BlockResult>& results = store;
   results.assign(t.grid->occupied_blocks(), BlockResult{});
   parallel_for_work(work_of_blocks(t), [&](int block) {
+    if (t.asleep(block)) return;
     alignas(64) double velocities[mpm::Transfer<D>::kTileNodes * kVectorLanes<D> * kFields];
     load_tile<D, kFields>(*t.grid, block, fields, velocities);
     const BlockFrame<D> frame(*t.grid, block);

@@ -289,6 +289,8 @@ void scatter_blocks(mpm::Transfer<D>& transfer, const Load& load_of, const Has& 
   const double h = grid.spacing();
   parallel_for_work(work_of_blocks(transfer), [&](int block) {
     double* tile = transfer.tiles.data() + block * kTile;
+    if constexpr (kStress)
+      if (transfer.asleep(block) && take_kept(transfer.sleepers[block].state, tile)) return;
     std::memset(tile, 0, sizeof(double) * kTile);
     const BlockFrame<D> frame(grid, block);
     CellValues<D> cells;

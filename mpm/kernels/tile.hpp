@@ -115,6 +115,13 @@ void load_tile(const Grid<D>& grid, int block, const std::array<const double*, k
     }
 }
 
+// Copies what a sleeping block gives to its tile; false where it is awake, or has not been computed yet.
+inline bool take_kept(const Reals& kept, double* tile) {
+  if (kept.empty()) return false;
+  std::memcpy(tile, kept.data(), sizeof(double) * kept.size());
+  return true;
+}
+
 // Work of the occupied blocks for parallel_for_work: particles, and what a tile costs in particles.
 // Work space of the calling thread: good until it asks again.
 template <int D>
@@ -124,6 +131,7 @@ const std::vector<long>& work_of_blocks(const mpm::Transfer<D>& transfer) {
   before.assign(transfer.grid->occupied_blocks() + 1, 0);
   for (int b = 0; b < transfer.grid->occupied_blocks(); ++b) {
     before[b + 1] = before[b] + kTileWork;
+    if (transfer.asleep(b)) continue;
     for (const mpm::Body<D>& body : transfer.bodies) before[b + 1] += body.particles->ranges[b].count;
   }
   return before;

@@ -42,10 +42,11 @@ void update_velocities_of(mpm::Transfer<D>& t, const Phase& phase, double flip, 
   constexpr int kTileNodes = mpm::Transfer<D>::kTileNodes, kTile = mpm::Transfer<D>::kTileSide;
   const Grid<D>& grid = *t.grid;
   parallel_for_work(work_of_blocks(t), [&](int block) {
-    alignas(64) double in[kTileNodes * 2 * kVectorLanes<D>];
-    load_tile<D, 2>(grid, block, {v_old.data(), v_new.data()}, in);
     double* out = t.tiles.data() + static_cast<std::size_t>(block) * kTileNodes * 4;
     if (map) std::memset(out, 0, sizeof(double) * kTileNodes * 4);
+    if (t.asleep(block)) return;
+    alignas(64) double in[kTileNodes * 2 * kVectorLanes<D>];
+    load_tile<D, 2>(grid, block, {v_old.data(), v_new.data()}, in);
     const BlockFrame<D> frame(grid, block);
     for (const mpm::Body<D>& body : t.bodies) {
       ParticleSet<D>& set = *body.particles;

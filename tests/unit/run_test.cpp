@@ -114,6 +114,15 @@ TEST_CASE("a run fills its folder") {
   CHECK(summary.at("expectations").at(0).at("pass") == true);
   CHECK(summary.at("measures").at("foot").get<double>() > 5000);
   CHECK(summary.at("measures").at("top").get<double>() > 0);
+  // What was not computed, and what was.
+  const auto& saved = summary.at("saved");
+  CHECK(saved.at("cells").at("grid") == 24);
+  CHECK(saved.at("cells").at("in_pressure_system") == 20);
+  const long systems = saved.at("pressure_systems").at("solved").get<long>();
+  CHECK(systems == summary.at("steps").get<long>());
+  CHECK(saved.at("pressure_systems").at("structures_analysed").get<long>() < systems / 2);
+  CHECK(saved.at("pressure_systems").at("factorisations").get<long>() <= systems);
+  CHECK(saved.at("sleep").at("particle_steps_skipped") == 0);
   // Files are written beside the run, which may wait for them.
   const auto& wall = summary.at("wall_seconds");
   CHECK(wall.at("writer").get<double>() > 0);
@@ -199,6 +208,38 @@ TEST_CASE("a frame that cannot be written ends the run with 4, and the last chec
     CHECK(text_of(frame(i)) == text_of(whole + frame(i).substr(parts.size())));
 }
 
+TEST_CASE("soil asleep is counted, told and restarted") {
+  const Scratch scratch;
+  const std::string whole = scratch / "whole", parts = scratch / "parts";
+  const auto run = [&](const std::string& folder, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"run",
+                                   kColumn,
+                                   "--quiet",
+                                   "--set",
+                                   "numerics.sleep=true",
+                                   "--set",
+                                   "numerics.sleep_delay=0.05",
+                                   "--set",
+                                   "stage.settle.duration=0.4",
+                                   "--set",
+                                   "stage.settle.damping=0.2",
+                                   "-o",
+                                   folder};
+    words.insert(words.end(), more.begin(), more.end());
+    return polder_program(words).code;
+  };
+  REQUIRE(run(whole) == 0);
+  const auto sleep = summary_of(whole).at("saved").at("sleep");
+  CHECK(sleep.at("particle_steps_skipped").get<long>() > 0);
+  CHECK(sleep.at("particle_steps_skipped").get<long>() < sleep.at("particle_steps").get<long>());
+  CHECK(text_of(whole + "/log.txt").find("particle-steps were skipped") != std::string::npos);
+  REQUIRE(run(parts, {"--until", "0.37"}) == 0);
+  REQUIRE(run(parts, {"--restart"}) == 0);
+  check_same_state(whole, parts);
+  CHECK(summary_of(parts).at("saved").at("sleep").at("particle_steps_skipped") ==
+        sleep.at("particle_steps_skipped"));
+}
+
 TEST_CASE("the number of threads does not change a bit") {
   const Scratch scratch;
   for (const char* n : {"1", "2", "4"})
@@ -275,7 +316,10 @@ TEST_CASE("explain tells the plan") {
   CHECK(r.code == 0);
   for (const char* part :
        {"formulation   one-layer", "particles     80 in 1 body", "step limit",
-        "(skeleton wave in saturated '", "settle: dynamic", "discrete elements", "run time      about"})
+        "(skeleton wave in saturated '", "settle: dynamic", "discrete elements", "run time      about",
+        "structure of the pressure system: analysed again only where", "of 24 in the grid",
+        "sleep: off, soil at rest is computed on", "points of water: the formulation has none",
+        "fields of frames: "})
     CHECK_MESSAGE(r.out.find(part) != std::string::npos, part);
   CHECK(polder_program({"explain", kColumn, "--set", "formulation=dry"}).out.find("pore water  none") !=
         std::string::npos);
