@@ -269,8 +269,7 @@ void Relaxation<D>::visit(StateVisitor& v) {
   v.reals("relaxation_past_displacement", past_), v.reals("relaxation_past_ratio", past_ratio_);
   for (std::size_t b = 0; b < start_.size(); ++b) v.reals("relaxation_start_" + std::to_string(b), start_[b]);
   std::int64_t steps = report_.steps;
-  v.count("relaxation_steps", steps), v.number("relaxation_moved", moved_),
-      v.number("relaxation_ramp", ramp_);
+  v.count("relaxation_step", steps), v.number("relaxation_moved", moved_), v.number("relaxation_ramp", ramp_);
   report_.steps = steps;
   if (v.reading()) show_masses();
 }
